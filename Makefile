@@ -13,8 +13,6 @@ TOOLS := target/tools
 MDBOOK := 0.5.4
 MDBOOK_KATEX := 0.10.0
 CARGO_DEB := 3.8.0
-# Tests put faults into the program (src/run/fault.rs); `make release` builds what users get, without.
-TESTED := --locked --features fault-injection
 
 help: ## Say what each target does
 	@sed -nE 's/^([a-z-]+):.*## (.*)/\1\t\2/p' Makefile | expand -t 16
@@ -31,19 +29,19 @@ test: run-tests ## Run the test suite, about eight minutes on two cores
 check: ## What must pass before a change lands: format, lints, documentation, tests
 check: test-deps
 	$(ENV) cargo fmt --check
-	$(ENV) cargo clippy $(TESTED) --all-targets -- -D warnings
+	$(ENV) cargo clippy --locked --all-targets -- -D warnings
 	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
 	$(MAKE) run-tests
 
 fuzz: test-deps ## Read random inputs, surfaces and files of results for ten minutes each; new ones stay in tests/fuzz/
-	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test $(TESTED) --test fuzz -- --nocapture --test-threads=1
+	$(ENV) WHIPPLE_FUZZ_SECONDS=600 cargo test --locked --test fuzz -- --nocapture --test-threads=1
 
 fuzz-memory: test-deps ## Read random files of results under valgrind for SECONDS=600
 	@command -v valgrind >/dev/null || { echo "fuzz-memory needs valgrind: apt install valgrind" >&2; exit 2; }
 	$(ENV) host=$$(rustc -vV | sed -n 's/^host: //p' | tr a-z- A-Z_); \
 	env WHIPPLE_FUZZ_SECONDS=$(or $(SECONDS),600) \
 	    "CARGO_TARGET_$${host}_RUNNER=valgrind --quiet --error-exitcode=9 --suppressions=$(CURDIR)/tests/fuzz/valgrind.supp" \
-	    cargo test $(TESTED) --test fuzz files -- --nocapture --test-threads=1
+	    cargo test --locked --test fuzz files -- --nocapture --test-threads=1
 
 soak: release ## Kill, stop and restart a run at random for MINUTES=30, with SEED=1; the bits must stay
 	tests/soak.sh -m $(or $(MINUTES),30) -s $(or $(SEED),1)

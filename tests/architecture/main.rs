@@ -14,11 +14,10 @@ use source::{CRATES_OF_ROOMS, Found, Source, has};
 
 /// Rooms whose results must have the same bits on any ranks, threads and hosts.
 const PHYSICS: &str = "numerics populate material particles domain fragments neighbours loads contact sph step diagnose \
-     measure ballistic exact analytic sums engine";
+     measure ballistic exact sums engine";
 
 /// Rooms of physics that have no business with clocks at all (`step` times its phases).
-const TIMELESS: &str = "numerics populate material particles fragments neighbours loads contact sph measure ballistic exact \
-     analytic sums";
+const TIMELESS: &str = "numerics populate material particles fragments neighbours loads contact sph measure ballistic exact sums";
 
 /// Rooms of the step, where one thread may not go over all particles while others wait.
 const STEP: &str =
@@ -30,9 +29,8 @@ const NOT_OF_STEP: &[(&str, &str)] = &[
     ("step/restored.rs", "checks a restart"),
 ];
 
-/// Who may start, go on with and step a simulation: these rooms, and the bench.
+/// Rooms that may start, go on with and step a simulation.
 const CALLERS_OF_LOOP: &str = "step run";
-const BENCH: &str = "app/bench/";
 
 /// Functions of `f64` whose bits depend on the host's libm; the `libm` crate has them all.
 const HOST_MATHEMATICS: &str = "exp exp2 exp_m1 ln ln_1p log log2 log10 powf sin cos tan asin acos atan atan2 sinh cosh tanh \
@@ -47,7 +45,7 @@ const NO_STEP: &str = "not in every step";
 /// Names and calls that break a law in the room where they stand, each with its line.
 fn misplaced_names(source: &Source) -> Vec<Found> {
     let is_in = |rooms| has(rooms, &source.room);
-    let drives = is_in(CALLERS_OF_LOOP) || source.path.starts_with(BENCH);
+    let drives = is_in(CALLERS_OF_LOOP);
     let name_fault = |name: &str| match name {
         "HashMap" | "HashSet" if is_in(PHYSICS) => "has no order: use a BTreeMap",
         "Instant" | "SystemTime" if is_in(TIMELESS) => "is a clock",
@@ -161,7 +159,7 @@ fn every_room_of_the_tables_is_there() {
     for room in rooms.split(' ').filter(|room| !has(CRATES_OF_ROOMS, room)) {
         assert!(sources().iter().any(|source| source.room == room), "{room}");
     }
-    for file in NOT_OF_STEP.iter().map(|(file, _)| *file).chain([BENCH]) {
+    for file in NOT_OF_STEP.iter().map(|(file, _)| *file) {
         assert!(
             sources().iter().any(|source| source.path.contains(file)),
             "{file}"
@@ -182,7 +180,7 @@ fn finds_names_and_functions_in_code_and_in_macros() {
                 fn f(x: f64) { x.exp() + libm::exp(x) + x.abs() }\n\
                 fn g() { assert!(x.powf(2.0),\n\"{}\", y.map(f64::sin)) }\nuse std::time::Instant;";
     assert_caught("sph/mod.rs", text, &[1, 3, 4, 5, 6, 7]);
-    assert_caught("analytic/exact/a/b.rs", text, &[1, 3, 4, 5, 6, 7]);
+    assert_caught("engine/contact/a/b.rs", text, &[1, 3, 4, 5, 6, 7]);
     assert_caught("engine/step/mod.rs", text, &[1, 3, 4, 5, 6]);
     assert_caught("model/contact/mod.rs", text, &[]);
 }

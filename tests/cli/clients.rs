@@ -9,10 +9,10 @@ use std::process::{Command, Output};
 use crate::program::WHIPPLE;
 use crate::python::python;
 
-use whipple::comm::Comm;
-use whipple::output::Rows;
-use whipple::output::snapshot::{self, Form};
-use whipple::particles::ParticleStore;
+use comm::Comm;
+use files::output::Rows;
+use files::output::snapshot::{self, Form};
+use particles::ParticleStore;
 
 fn root() -> &'static Path {
     crate::project::root()

@@ -32,8 +32,8 @@ fn only_line(ended: &Ended) -> &str {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_panic_on_one_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
@@ -58,8 +58,8 @@ fn a_panic_on_one_rank_ends_all() {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn an_error_on_one_rank_is_that_of_all() {
     let place = tempfile::tempdir().unwrap();
@@ -89,8 +89,8 @@ fn an_error_on_one_rank_is_that_of_all() {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_killed_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
@@ -107,8 +107,8 @@ fn a_killed_rank_ends_all() {
 /// In a step and while a checkpoint is written; the restart ends in the same bits.
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
     let place = tempfile::tempdir().unwrap();
@@ -136,8 +136,8 @@ fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
 /// A limit on the size of files in one rank is a disk that is full for that rank alone.
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     let place = tempfile::tempdir().unwrap();

@@ -22,6 +22,7 @@ mod export;
 mod fault;
 mod folder;
 mod input;
+mod instructions;
 mod jobs;
 mod json;
 mod keep;

@@ -2,7 +2,7 @@
 
 use crate::program::{WHIPPLE, assert_same, coarse_run, command, end, ranks};
 use std::fs;
-use whipple::output::Sheet;
+use files::output::Sheet;
 
 const EVERY: [&str; 4] = [
     "--set",

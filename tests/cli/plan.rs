@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::program::{WHIPPLE, command, end, quarter_impact};
-use whipple::plan::{CONSTANTS, Machine};
+use files::plan::{CONSTANTS, Machine};
 
 const COARSE: [&str; 2] = ["--set", "spacing=0.05mm"];
 

@@ -153,7 +153,7 @@ fn ranks_without_particles_are_counted() {
 }
 
 /// What tests ask for by the environment, the program that users build does not have.
-#[cfg(not(feature = "fault-injection"))]
+#[cfg(not(debug_assertions))]
 #[test]
 fn a_users_program_has_no_faults_on_purpose() {
     let place = tempfile::tempdir().unwrap();

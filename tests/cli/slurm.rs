@@ -170,8 +170,8 @@ impl Drop for Cluster {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
     let place = tempfile::tempdir().unwrap();
@@ -227,8 +227,8 @@ fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
 /// The script that `whipple plan` writes asks SLURM for its layout, each time that it submits itself.
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_planned_job_submits_itself() {
     let place = tempfile::tempdir().unwrap();

@@ -66,8 +66,8 @@ fn reference(place: &Path) -> PathBuf {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn signals_stop_softly() {
     let place = folder();
@@ -95,8 +95,8 @@ fn signals_stop_softly() {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
     let place = folder();
@@ -122,8 +122,8 @@ fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_file_and_the_clock_stop_softly() {
     let place = folder();
@@ -152,8 +152,8 @@ fn a_file_and_the_clock_stop_softly() {
 
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn the_launch_script_turns_signals_into_soft_stops() {
     let place = folder();
@@ -203,8 +203,8 @@ fn until_stops_at_its_time_and_is_no_failure() {
 /// counts.
 #[test]
 #[cfg_attr(
-    not(feature = "fault-injection"),
-    ignore = "needs --features fault-injection"
+    not(debug_assertions),
+    ignore = "needs debug assertions"
 )]
 fn a_stop_file_that_comes_while_a_run_starts_is_not_lost() {
     let place = folder();

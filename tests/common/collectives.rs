@@ -1,6 +1,6 @@
 //! Collective calls and messages, on ranks of any kind.
 
-use whipple::comm::{Comm, Exchange, Joint};
+use comm::{Comm, Exchange, Joint};
 
 use super::sentinel::mix;
 

@@ -7,8 +7,8 @@ pub mod random;
 pub mod sentinel;
 pub mod virtual_ranks;
 
-use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
-use whipple::model::{
+use material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
+use model::{
     Axis, Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads,
     MeasureOptions, OutputOptions, Overlap, RunControl, Shape, SphOptions, SymmetryPlane,
     TimeStepOptions, Vec3,
@@ -39,7 +39,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
 pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
     Case {
         title: "test".into(),
-        length_unit: whipple::model::readable::Readable::length(1.0),
+        length_unit: model::readable::Readable::length(1.0),
         dimension,
         materials: vec![library::find("aluminium-2024").expect("in the library")],
         bodies,
@@ -50,7 +50,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         symmetry: Vec::new(),
         loads: Loads::default(),
         sph: SphOptions::default(),
-        numerical_limits: whipple::model::NumericalLimits::default(),
+        numerical_limits: model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.4,
             force: 0.25,
@@ -76,7 +76,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
             history_every: None,
             fields: Vec::new(),
             snapshots: Vec::new(),
-            sharing: whipple::model::Sharing::default(),
+            sharing: model::Sharing::default(),
         },
         measure: MeasureOptions::default(),
         resolved: String::new(),

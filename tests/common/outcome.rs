@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use whipple::comm::Comm;
-use whipple::material::{AfterSpall, Spall};
-use whipple::model::{
+use comm::Comm;
+use material::{AfterSpall, Spall};
+use model::{
     Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
 };
-use whipple::particles::{FieldInfo, HaloPhase, Life, rows as fields};
-use whipple::step::Simulation;
+use particles::{FieldInfo, HaloPhase, Life, rows as fields};
+use engine::step::Simulation;
 
 use super::sphere_on_plate;
 
@@ -92,7 +92,7 @@ pub fn everything() -> Case {
 /// A case with all loads there are.
 pub fn loaded() -> Case {
     let text = include_str!("loaded.toml");
-    whipple::input::parse("tests/common/loaded.toml", text, &[])
+    files::input::parse("tests/common/loaded.toml", text, &[])
         .unwrap_or_else(|error| panic!("{error}"))
 }
 

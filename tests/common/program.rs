@@ -61,10 +61,10 @@ pub fn command(program: &str) -> Command {
 /// Lets a rank of a command meet a fault, see `src/run/fault.rs`.
 #[track_caller]
 pub fn strike<'a>(command: &'a mut Command, fault: &str) -> &'a mut Command {
-    let built = cfg!(feature = "fault-injection");
+    let built = cfg!(debug_assertions);
     assert!(
         built,
-        "the program is built without --features fault-injection"
+        "the program is built without debug assertions"
     );
     command.env("WHIPPLE_TEST_FAULT", fault)
 }

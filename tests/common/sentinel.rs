@@ -1,6 +1,6 @@
 //! Particles whose every number tells where it belongs.
 
-use whipple::particles::FIELDS;
+use particles::FIELDS;
 
 /// The id of particle k: no order in it, 40 bits.
 pub fn id(k: u64) -> u64 {

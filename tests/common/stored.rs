@@ -1,12 +1,12 @@
 //! A case, and particles of files, whose every number tells where it belongs.
 
-use whipple::comm::Comm;
-use whipple::model::{
+use comm::Comm;
+use model::{
     Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
     OutputOptions, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
-use whipple::output::snapshot;
-use whipple::particles::{FIELDS, ParticleStore};
+use files::output::snapshot;
+use particles::{FIELDS, ParticleStore};
 
 use crate::sentinel::{id, mix, sentinel};
 
@@ -34,7 +34,7 @@ pub fn case() -> Case {
     };
     Case {
         title: "Sphere on plate, ⌀ 0.6 mm".to_owned(),
-        length_unit: whipple::model::readable::Readable::length(1.0),
+        length_unit: model::readable::Readable::length(1.0),
         dimension: 3,
         materials: Vec::new(),
         bodies: vec![body("sphere", 2e-5), body("plate", 1e-5)],
@@ -42,12 +42,12 @@ pub fn case() -> Case {
         default_contact: ContactMode::None,
         self_contact: None,
         symmetry: vec![SymmetryPlane {
-            axis: whipple::model::Axis::Y,
+            axis: model::Axis::Y,
             position: 0.0,
         }],
         loads: Loads::default(),
         sph: SphOptions::default(),
-        numerical_limits: whipple::model::NumericalLimits::default(),
+        numerical_limits: model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
             force: 0.3,
@@ -73,7 +73,7 @@ pub fn case() -> Case {
             history_every: None,
             fields: Vec::new(),
             snapshots: Vec::new(),
-            sharing: whipple::model::Sharing::default(),
+            sharing: model::Sharing::default(),
         },
         fragments: None,
         measure: MeasureOptions::default(),

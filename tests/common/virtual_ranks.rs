@@ -1,6 +1,6 @@
 //! Tests on virtual ranks.
 
-use whipple::comm::{Comm, Machine, virtual_ranks};
+use comm::{Comm, Machine, virtual_ranks};
 
 /// Runs a task on so many virtual ranks, each with a pool of one thread, its own.
 pub fn on_virtual_ranks<T: Send>(

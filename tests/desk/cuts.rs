@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use resvg::tiny_skia::Pixmap;
-use whipple::plot::{Pictures, Request, Sequence, Source};
+use plot::{Pictures, Request, Sequence, Source};
 
 use crate::fixture::{Case, Particles, impact, plot, write};
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use hdf5::types::{FixedAscii, FixedUnicode};
-use whipple::app::plot::{self as command, PlotArgs};
+use app::plot::{self as command, PlotArgs};
 
 /// Particle spacing of the synthetic impact (m).
 pub const SPACING: f64 = 2e-5;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use resvg::tiny_skia::Pixmap;
-use whipple::output::h5::read::SnapshotFile;
+use files::output::h5::read::SnapshotFile;
 
 use crate::fixture::{self, Case, Particles, impact, plot, write};
 

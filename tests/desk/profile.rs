@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use crate::shocks::Shocks;
 use resvg::tiny_skia::Pixmap;
-use whipple::exact::finite_strain::Medium;
-use whipple::material::LinearForm;
-use whipple::plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
+use exact::finite_strain::Medium;
+use material::LinearForm;
+use plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
 
 use crate::fixture::{Case, Particles, plot, write};
 

@@ -6,7 +6,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use resvg::tiny_skia::Pixmap;
-use whipple::plot::{RadiographRequest, Radiographs, Source};
+use plot::{RadiographRequest, Radiographs, Source};
 
 use crate::fixture::{Case, Particles, SPACING, impact, plot, write};
 

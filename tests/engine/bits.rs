@@ -8,12 +8,12 @@ use crate::common::outcome::{
     CASES, Outcome, advance, assert_same, every_option, everything, loaded, normalised, start,
 };
 use crate::common::random::Random;
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::model::Case;
-use whipple::numerics::dispatch::available;
-use whipple::particles::SCRATCH_WORDS;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use model::Case;
+use numerics::dispatch::available;
+use particles::SCRATCH_WORDS;
+use engine::step::Simulation;
 
 const STEPS: usize = 40;
 

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::model::Case;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use model::Case;
+use engine::step::Simulation;
 
 pub const STEPS: usize = 60;
 

@@ -2,11 +2,11 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use whipple::domain::Mirrors;
-use whipple::model::{Axis, SymmetryPlane};
-use whipple::neighbours::MotionRecord;
-use whipple::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
-use whipple::particles::{Asleep, Image};
+use particles::Mirrors;
+use model::{Axis, SymmetryPlane};
+use particles::neighbours::MotionRecord;
+use particles::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
+use particles::{Asleep, Image};
 
 use crate::common::random::Random;
 

@@ -9,11 +9,11 @@
 
 use crate::common::random::Random;
 use crate::world::{Lists, SPACING, World, case_of, some_body};
-use whipple::contact::ContactTable;
-use whipple::model::{
+use engine::contact::ContactTable;
+use model::{
     Case, ContactClass, ContactMode, ContactPair, LatticeKind, Overlap, Potential, PotentialRange,
 };
-use whipple::numerics::kernel::Kernel;
+use numerics::kernel::Kernel;
 
 /// Two or three interlocking random clouds of the bodies, about one spacing apart.
 fn blobs(case: &Case, seed: u64) -> Vec<(usize, [f64; 3])> {

@@ -2,10 +2,10 @@
 //! leave with, and where the rest of the energy goes.
 
 use crate::world::{SPACING, World, case_of, some_body};
-use whipple::contact::ContactForce;
-use whipple::material::Material;
-use whipple::neighbours::MotionRecord;
-use whipple::numerics::vector::{dot, norm};
+use engine::contact::ContactForce;
+use material::Material;
+use particles::neighbours::MotionRecord;
+use numerics::vector::{dot, norm};
 
 /// What becomes of two particles that meet.
 struct Bounce {

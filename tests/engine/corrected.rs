@@ -7,13 +7,13 @@ use crate::common::random::Random;
 use crate::common::virtual_ranks::on_each;
 use crate::corrected_world::{Matrix, World};
 use crate::linear_field::free_block;
-use whipple::diagnose::Worst;
-use whipple::domain::Mirrors;
-use whipple::model::{Axis, SphForm, Vec3};
-use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use whipple::step::Simulation;
+use engine::diagnose::Worst;
+use particles::Mirrors;
+use model::{Axis, SphForm, Vec3};
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use engine::step::Simulation;
 
-fn lane(values: &[whipple::numerics::lanes::F64x8; 6], k: usize) -> Matrix {
+fn lane(values: &[numerics::lanes::F64x8; 6], k: usize) -> Matrix {
     let [xx, yy, zz, xy, xz, yz] = values.map(|v| v.0[k]);
     Matrix::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }

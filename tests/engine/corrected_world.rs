@@ -1,15 +1,15 @@
 //! Clouds to which the sweeps of corrected SPH are applied, and plain sums beside them.
 
 use nalgebra::Matrix3;
-use whipple::domain::Mirrors;
-use whipple::model::Vec3;
-use whipple::neighbours::Chunk;
-use whipple::numerics::dispatch::{Instructions, available};
-use whipple::numerics::kernel::{Kernel, PairScale};
-use whipple::sph::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
-use whipple::sph::momentum::{Forces, Momentum, Viscosity};
-use whipple::sph::neighbourhood::Sources;
-use whipple::sph::terms::PairTerms;
+use particles::Mirrors;
+use model::Vec3;
+use particles::neighbours::Chunk;
+use numerics::dispatch::{Instructions, available};
+use numerics::kernel::{Kernel, PairScale};
+use engine::sph::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
+use engine::sph::momentum::{Forces, Momentum, Viscosity};
+use engine::sph::neighbourhood::Sources;
+use engine::sph::terms::PairTerms;
 
 use crate::cloud::{Cloud, Found};
 use crate::common::random::Random;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, every_option, start};
 use crate::common::{SPACING, body, case, make_elastic, planes};
-use whipple::model::{
+use model::{
     Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3,
 };
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// What the conventional sums give a linear field on a cubic lattice at h = 1.3 Δp (see `engine_sph`).
 const FACTORS: [f64; 3] = [

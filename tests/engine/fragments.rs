@@ -6,8 +6,8 @@
     reason = "small numbers"
 )]
 
-use whipple::fragments::{Census, Matter, Rule, components, find_alone};
-use whipple::model::{Axis, FragmentOptions, SymmetryPlane};
+use engine::fragments::{Census, Matter, Rule, components, find_alone};
+use model::{Axis, FragmentOptions, SymmetryPlane};
 
 /// Particles in cubes of a spacing.
 #[derive(Default)]
@@ -151,7 +151,7 @@ fn dust_is_what_has_too_few_particles_and_bodies_may_stay_apart() {
 #[test]
 fn a_spinning_ellipsoid_has_its_sizes_and_its_spin() {
     let (axes, spacing): ([f64; 3], f64) = ([0.010, 0.007, 0.005], 0.001);
-    let turn = whipple::model::rotation(&[1.0, 2.0, 0.5].into(), 0.7);
+    let turn = model::rotation(&[1.0, 2.0, 0.5].into(), 0.7);
     let (centre, flight, spin) = ([0.3, -0.2, 0.1], [5000.0, -300.0, 40.0], [2e3, -7e3, 4e3]);
     let mut cloud = Cloud::default();
     for k in 0..24_usize.pow(3) {
@@ -159,8 +159,8 @@ fn a_spinning_ellipsoid_has_its_sizes_and_its_spin() {
         if (0..3).map(|a| (at[a] / axes[a]).powi(2)).sum::<f64>() >= 1.0 {
             continue;
         }
-        let r = turn * whipple::model::Vec3::from(at);
-        let v = whipple::model::Vec3::from(spin).cross(&r);
+        let r = turn * model::Vec3::from(at);
+        let v = model::Vec3::from(spin).cross(&r);
         cloud.add([0, 1, 2].map(|a| centre[a] + r[a]), spacing);
         *cloud.velocity.last_mut().unwrap() = [0, 1, 2].map(|a| flight[a] + v[a]);
     }
@@ -229,7 +229,7 @@ fn a_quarter_reports_the_whole() {
             .filter(|f| (f.sizes[0] / fragment.sizes[0] - 1.0).abs() < 1e-6)
             .collect();
         assert_eq!(equal.len() as u64, fragment.copies);
-        let same = |f: &&&whipple::fragments::Fragment| {
+        let same = |f: &&&engine::fragments::Fragment| {
             (0..3).all(|a| (f.centre[a] - fragment.centre[a]).abs() < 1e-9)
         };
         let one = equal.iter().find(same).expect("it stands where it stood");

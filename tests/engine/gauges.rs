@@ -2,10 +2,10 @@
 
 use crate::common::outcome::start;
 use crate::common::{SPACING, ball, case, planes, sphere_on_plate};
-use whipple::comm::Comm;
-use whipple::measure::GaugeRow;
-use whipple::model::{Axis, Cadence, Case, Gauge, Vec3, Witness};
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::measure::GaugeRow;
+use model::{Axis, Cadence, Case, Gauge, Vec3, Witness};
+use engine::step::Simulation;
 
 fn gauge(at: [f64; 3], fields: &[&str]) -> Gauge {
     Gauge {

@@ -4,11 +4,11 @@
 use std::time::Instant;
 
 use crate::physics_support::{inline, run_to, start};
-use whipple::comm::Comm;
-use whipple::model::{Case, Vec3};
-use whipple::populate;
-use whipple::preflight::{approaches, beginning, warnings};
-use whipple::step::Simulation;
+use comm::Comm;
+use model::{Case, Vec3};
+use populate;
+use files::preflight::{approaches, beginning, warnings};
+use engine::step::Simulation;
 
 /// A copper block of 6 × 5 × 4 mm about (1, 2, 3) mm.
 fn block(spacing: &str, more: &str) -> Case {

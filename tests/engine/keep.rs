@@ -3,9 +3,9 @@
 
 use crate::common::outcome::{advance, start};
 use crate::common::{SPACING, ball, case, make_elastic, planes, sphere_on_plate};
-use whipple::comm::Comm;
-use whipple::model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
-use whipple::step::StepError;
+use comm::Comm;
+use model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
+use engine::step::StepError;
 
 /// What is above and below some distances (spacings) from the origin.
 fn region(above: [f64; 3], below: [f64; 3]) -> Region {

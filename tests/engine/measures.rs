@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, start};
 use crate::common::sphere_on_plate;
-use whipple::comm::Comm;
-use whipple::measure::BodyFigures;
-use whipple::model::Case;
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::measure::BodyFigures;
+use model::Case;
+use engine::step::Simulation;
 
 fn impact(quarter: bool) -> Case {
     sphere_on_plate(1e-4, 3000.0, quarter, 1.0)

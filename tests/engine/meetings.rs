@@ -3,18 +3,18 @@
 
 use crate::common::outcome::start;
 use crate::common::{SPACING, ball, case, make_elastic};
-use whipple::comm::Comm;
-use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength};
-use whipple::model::{
+use comm::Comm;
+use material::{Elastic, Eos, Linear, LinearForm, Strength};
+use model::{
     Case, Motion, Region, Resistance, RigidSurface, Spin, SurfaceShape, VelocityLoad,
 };
-use whipple::step::{Reason, Simulation};
+use engine::step::{Reason, Simulation};
 
 /// Speed of all that flies here (m/s), some two hundred spacings in a step by sound.
 const SPEED: f64 = 4000.0;
 
 /// Balls of a solid so soft that sound is at 6.5 m/s.
-fn soft(bodies: Vec<whipple::model::Body>) -> Case {
+fn soft(bodies: Vec<model::Body>) -> Case {
     let mut case = case(3, bodies, 1.0);
     make_elastic(&mut case);
     case.materials[0].eos = Eos::Linear(Linear {

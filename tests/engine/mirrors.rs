@@ -11,11 +11,11 @@ use std::collections::BTreeMap;
 use crate::common::outcome::{advance, start};
 use crate::common::sentinel::mix;
 use crate::common::{SPACING, ball, case, make_elastic, planes};
-use whipple::comm::Comm;
-use whipple::domain::Mirrors;
-use whipple::model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
-use whipple::particles::{FIELDS, FieldInfo, ParticleStore};
-use whipple::step::Simulation;
+use comm::Comm;
+use particles::Mirrors;
+use model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
+use particles::{FIELDS, FieldInfo, ParticleStore};
+use engine::step::Simulation;
 
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
 /// particles of a reduced model and the same ones of the whole.

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use crate::cloud::{Cloud, Found, Recipe};
 use crate::common::random::Random;
 use proptest::prelude::*;
-use whipple::model::ContactClass;
-use whipple::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
-use whipple::numerics::ordered::ordered;
-use whipple::particles::Image;
+use model::ContactClass;
+use particles::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
+use numerics::ordered::ordered;
+use particles::Image;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)

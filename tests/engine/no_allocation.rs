@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 use crate::common::process::in_its_own;
 use crate::project;
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use engine::step::Simulation;
 
 /// Counts allocations of all threads, once it is told to.
 struct Counting;

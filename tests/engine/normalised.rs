@@ -13,22 +13,22 @@ use crate::common::virtual_ranks::on_each;
 use crate::common::{ball, body, case, make_elastic};
 use crate::linear_field::free_block;
 use nalgebra::Matrix3;
-use whipple::comm::Comm;
-use whipple::domain::Mirrors;
-use whipple::model::{
+use comm::Comm;
+use particles::Mirrors;
+use model::{
     Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
 };
-use whipple::neighbours::Chunk;
-use whipple::numerics::dispatch::available;
-use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use whipple::numerics::lanes::LANES;
-use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::Sources;
-use whipple::sph::normalised::{
+use particles::neighbours::Chunk;
+use numerics::dispatch::available;
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use numerics::lanes::LANES;
+use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use engine::sph::neighbourhood::Sources;
+use engine::sph::normalised::{
     Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
 };
-use whipple::sph::terms::{NORMALISED, PairTerms};
-use whipple::step::Simulation;
+use engine::sph::terms::{NORMALISED, PairTerms};
+use engine::step::Simulation;
 
 /// A cloud with all that the sums read.
 struct World {
@@ -155,7 +155,7 @@ impl World {
                 own[images[place as usize].base()] = corrected.corrections[k];
             }
         });
-        let reflected = |image: &whipple::particles::Image| {
+        let reflected = |image: &particles::Image| {
             let c = &own[image.base()];
             Correction {
                 matrix: Mirrors::reflect_tensor(&c.matrix, image.code()),
@@ -186,7 +186,7 @@ impl World {
             .unzip();
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
-            let sums = |set: whipple::numerics::dispatch::Instructions| {
+            let sums = |set: numerics::dispatch::Instructions| {
                 set.run(Momentum::<S, StressRecord, NORMALISED> {
                     around: Sources {
                         records: &self.found.motion,

@@ -11,12 +11,12 @@ use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, everything, start};
 use crate::common::{SPACING, ball, body, case, make_elastic, planes};
-use whipple::comm::Comm;
-use whipple::material::{AfterSpall, Spall};
-use whipple::model::{
+use comm::Comm;
+use material::{AfterSpall, Spall};
+use model::{
     Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3,
 };
-use whipple::step::{Reason, Simulation};
+use engine::step::{Reason, Simulation};
 
 /// A body alone, however fast, is at rest in its own frame: no force, no stress, the same velocity
 /// to the last bit.

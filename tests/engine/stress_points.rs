@@ -6,9 +6,9 @@ use crate::common::virtual_ranks::on_each;
 use crate::common::{ball, body, case, make_elastic, planes, sphere_on_plate};
 use crate::linear_field::free_block;
 use nalgebra::Matrix3;
-use whipple::comm::Comm;
-use whipple::model::{Axis, Case, Shape, SmoothingLength, SphForm, Vec3};
-use whipple::step::Simulation;
+use comm::Comm;
+use model::{Axis, Case, Shape, SmoothingLength, SphForm, Vec3};
+use engine::step::Simulation;
 
 const SPACING: f64 = 1e-4;
 

@@ -2,7 +2,7 @@
 //! them, and what moving and turning surfaces put in is booked.
 
 use crate::physics_support::{inline, run_to, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// A soft elastic block that falls, and what it falls on.
 fn fall(velocity: &str, surfaces: &str) -> Simulation {

@@ -3,17 +3,17 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
-use whipple::domain::Mirrors;
-use whipple::neighbours::Chunk;
-use whipple::neighbours::MotionRecord;
-use whipple::numerics::dispatch::{Instructions, available};
-use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use whipple::numerics::lanes::LANES;
-use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use whipple::sph::neighbourhood::Sources;
-use whipple::sph::terms::artificial_stress::repulsion;
-use whipple::sph::terms::balsara::limiter;
-use whipple::sph::terms::{
+use particles::Mirrors;
+use particles::neighbours::Chunk;
+use particles::neighbours::MotionRecord;
+use numerics::dispatch::{Instructions, available};
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use numerics::lanes::LANES;
+use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use engine::sph::neighbourhood::Sources;
+use engine::sph::terms::artificial_stress::repulsion;
+use engine::sph::terms::balsara::limiter;
+use engine::sph::terms::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH,
 };
 

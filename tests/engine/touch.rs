@@ -2,13 +2,13 @@
 #![allow(clippy::float_cmp, reason = "what is exact is held exactly")]
 
 use crate::common::{body, case, sphere_on_plate};
-use whipple::comm::Comm;
-use whipple::contact::overlap::{self, OFFSET_LIMIT, initial_offset};
-use whipple::model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
-use whipple::numerics::vector::norm;
-use whipple::particles::ParticleStore;
-use whipple::populate;
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::contact::overlap::{self, OFFSET_LIMIT, initial_offset};
+use model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
+use numerics::vector::norm;
+use particles::ParticleStore;
+use populate;
+use engine::step::Simulation;
 
 const SPACING: f64 = 1e-5;
 

@@ -12,10 +12,10 @@ use crate::common::outcome::{Outcome, assert_same};
 use crate::common::sentinel::mix;
 use crate::common::virtual_ranks::on_virtual_ranks;
 use crate::physics_support::{ready, run_to, start};
-use whipple::comm::{Comm, Computing, Exchange, Joint, Machine, virtual_ranks, waited};
-use whipple::input;
-use whipple::model::{Axis, Case};
-use whipple::step::{Phase, Simulation, Timers};
+use comm::{Comm, Computing, Exchange, Joint, Machine, virtual_ranks, waited};
+use files::input;
+use model::{Axis, Case};
+use engine::step::{Phase, Simulation, Timers};
 
 /// Numbers of ranks: one, few, and one that is no power of two, many.
 const RANKS: [usize; 6] = [1, 2, 3, 7, 64, 1000];

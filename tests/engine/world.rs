@@ -1,15 +1,15 @@
 //! Particles of two or more bodies anywhere in space, what contact does to them, and the energy of
 //! contact written down again.
 
-use whipple::contact::{BodyForce, ContactForce, ContactTable, ContactView, TaskForces, overlap};
-use whipple::material::library;
-use whipple::model::{
+use engine::contact::{BodyForce, ContactForce, ContactTable, ContactView, TaskForces, overlap};
+use material::library;
+use model::{
     Body, Case, ContactClass, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3,
 };
-use whipple::neighbours::MotionRecord;
-use whipple::numerics::kernel::Kernel;
-use whipple::particles::{Image, ParticleStore};
-use whipple::populate;
+use particles::neighbours::MotionRecord;
+use numerics::kernel::Kernel;
+use particles::{Image, ParticleStore};
+use populate;
 
 use crate::common::{body, case};
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::schema_keys::{Key, caret, key_at, keys};
-use whipple::input::parse;
+use files::input::parse;
 
 const SOUND: &str = include_str!("../bad_inputs/case.toml");
 
@@ -214,7 +214,7 @@ fn a_value_of_another_type_or_unit_is_told_for_every_key() {
 
 /// What is said of a file.
 fn refusal(path: &Path) -> String {
-    let error = whipple::input::load(path, &[]).expect_err("no case");
+    let error = files::input::load(path, &[]).expect_err("no case");
     let message = error.to_string();
     assert!(message.starts_with("error: "), "{message}");
     message

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use whipple::input::{InputError, load, parse};
+use files::input::{InputError, load, parse};
 
 /// A valid case; mistakes are made by replacing parts of it.
 const GOOD: &str = r#"title = "a test"

@@ -7,10 +7,10 @@ use std::path::Path;
 use crate::surfaces::{
     Triangles, ball, cuboid, rounded, torus, turned, volume, write_obj, write_stl,
 };
-use whipple::input::load;
-use whipple::model::{Axis, Case, Shape, SymmetryPlane, Vec3};
-use whipple::populate;
-use whipple::preflight::{approaches, warnings};
+use files::input::load;
+use model::{Axis, Case, Shape, SymmetryPlane, Vec3};
+use populate;
+use files::preflight::{approaches, warnings};
 
 /// A case in a folder of a body at .1 mm.
 fn written(folder: &Path, body: &str, more: &str) -> std::path::PathBuf {
@@ -380,13 +380,13 @@ fn the_resolved_case_finds_its_files_and_knows_them() {
     for overrides in [vec![], vec!["spacing=\"0.2 mm\"".to_owned()]] {
         let case = load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(case.resolved.matches("sha256").count(), 2);
-        let again = whipple::input::parse("elsewhere/case.toml", &case.resolved, &[]);
+        let again = files::input::parse("elsewhere/case.toml", &case.resolved, &[]);
         let again = again.unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(again.bodies, case.bodies);
         assert_eq!(again.resolved, case.resolved);
         let saved = std::fs::read(folder.path().join("ball.obj")).unwrap();
         write_obj(&folder.path().join("ball.obj"), &ball(6, 0.5));
-        let error = whipple::input::parse("elsewhere/case.toml", &case.resolved, &[]).unwrap_err();
+        let error = files::input::parse("elsewhere/case.toml", &case.resolved, &[]).unwrap_err();
         let said = "ball.obj is no longer the one that the case began with";
         assert!(error.to_string().contains(said), "{error}");
         std::fs::write(folder.path().join("ball.obj"), saved).unwrap();
@@ -404,7 +404,7 @@ fn fewer_dimensions_have_no_surfaces_of_triangles() {
         )
     };
     for dimension in [1, 2] {
-        let error = whipple::input::parse("case.toml", &text(dimension), &[]).unwrap_err();
+        let error = files::input::parse("case.toml", &text(dimension), &[]).unwrap_err();
         let said = format!("a {dimension}-dimensional case has no obj");
         assert!(error.to_string().contains(&said), "{error}");
         assert!(error.to_string().contains("take a "), "{error}");

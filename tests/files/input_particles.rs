@@ -8,10 +8,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use whipple::input::parse;
-use whipple::model::{Body, Case, Quantity, Sizes};
-use whipple::neighbours::Kinds;
-use whipple::populate::{self, Brick, Share, Wanted};
+use files::input::parse;
+use model::{Body, Case, Quantity, Sizes};
+use particles::neighbours::Kinds;
+use populate::{self, Brick, Share, Wanted};
 
 /// A case with one body of some particles.
 fn text(particles: &str, more: &str) -> String {
@@ -215,7 +215,7 @@ fn columns_have_units_and_names() {
     let density = case.materials[0].reference_density;
     assert!(close(cloud.volumes()[0], 8.93e-6 / density));
     // What is told of the body as a whole.
-    assert_eq!(body.velocity, whipple::model::Vec3::new(1e3, 0.0, -6e3));
+    assert_eq!(body.velocity, model::Vec3::new(1e3, 0.0, -6e3));
     assert_eq!(
         (body.initial.velocity_spread, body.initial.largest_energy),
         (1e3, -2e3)
@@ -292,8 +292,8 @@ fn sites_are_those_of_any_slabs_and_planes() {
     fs::write(place.path().join("a.csv"), table).unwrap();
     let more = "spacing = \"1 mm\"";
     let mut case = case_in(place.path(), "file = \"a.csv\"", more);
-    case.symmetry.push(whipple::model::SymmetryPlane {
-        axis: whipple::model::Axis::X,
+    case.symmetry.push(model::SymmetryPlane {
+        axis: model::Axis::X,
         position: 0.0,
     });
     let body = &case.bodies[0];

@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
-use whipple::input::parse;
-use whipple::model::{Case, SymmetryPlane, Vec3};
-use whipple::populate;
+use files::input::parse;
+use model::{Case, SymmetryPlane, Vec3};
+use populate;
 
 fn case(dimension: usize, body: &str, more: &str) -> Case {
     let text = format!(

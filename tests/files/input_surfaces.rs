@@ -1,11 +1,11 @@
 //! Mistakes in rigid surfaces and their files: one clear message each; and how files are kept.
 
-use whipple::comm::Comm;
-use whipple::input::{load, parse};
-use whipple::model::Case;
-use whipple::populate::{bounds, smallest_gap};
-use whipple::preflight::{approaches, warnings};
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input::{load, parse};
+use model::Case;
+use populate::{bounds, smallest_gap};
+use files::preflight::{approaches, warnings};
+use engine::step::Simulation;
 
 const GOOD: &str = r#"dimension = 3
 spacing = "1 mm"

@@ -3,13 +3,13 @@
 use crate::common::outcome::start;
 use crate::common::{body, case};
 use std::f64::consts::PI;
-use whipple::comm::Comm;
-use whipple::measure::{Findings, Told};
-use whipple::model::{
+use comm::Comm;
+use engine::measure::{Findings, Told};
+use model::{
     Axis, Bar, Case, Debris, FrontLine, Include, Measure, MeasureKind, Shape, Slab, SymmetryPlane,
     Vec3, Zone, ZonePlace, rotation,
 };
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Particle spacing (m).
 const D: f64 = 1e-4;
@@ -545,7 +545,7 @@ difference = [
     { cylinder = { axis = "z", radius = "0.4 mm", length = "1 mm", centre = ["1.3 mm", "1.3 mm", 0] } },
 ]
 "#;
-    let case = whipple::input::parse("case", text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let case = files::input::parse("case", text, &[]).unwrap_or_else(|error| panic!("{error}"));
     let MeasureKind::Plate(slab) = &case.measure.measures[0].kind else {
         panic!("{:?}", case.measure.measures);
     };

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::stored::{case, particles};
-use whipple::comm::Comm;
-use whipple::output::h5::{Element, RowType, Writer};
-use whipple::output::{Block, OutputError, Rows, checkpoint, write_json};
-use whipple::particles::{FieldKind, Life, ParticleStore, rows};
+use comm::Comm;
+use files::output::h5::{Element, RowType, Writer};
+use files::output::{Block, OutputError, Rows, checkpoint, write_json};
+use particles::{FieldKind, Life, ParticleStore, rows};
 
 fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
     let (comm, case) = (Comm::solo(), case());

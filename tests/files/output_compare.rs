@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::stored::{case, meta, particles};
-use whipple::app::compare::{Report, compare};
-use whipple::app::info::describe;
-use whipple::comm::Comm;
-use whipple::output::{
+use app::compare::{Report, compare};
+use app::info::describe;
+use comm::Comm;
+use files::output::{
     Column, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
 };
-use whipple::particles::{ParticleStore, SCRATCH_WORDS};
+use particles::{ParticleStore, SCRATCH_WORDS};
 
 /// A run folder of 30 particles with all that a run writes, after `change` of the particles.
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {

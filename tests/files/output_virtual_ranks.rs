@@ -2,9 +2,9 @@
 //! messages.
 
 use crate::common::sentinel::{id, mix};
-use whipple::comm::{Comm, Machine, virtual_ranks};
-use whipple::model::Sharing;
-use whipple::output::{Block, Rows};
+use comm::{Comm, Machine, virtual_ranks};
+use model::Sharing;
+use files::output::{Block, Rows};
 
 /// Numbers of ranks: one group, primes, squares, many.
 const RANKS: [usize; 7] = [1, 2, 3, 7, 16, 64, 300];

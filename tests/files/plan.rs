@@ -1,11 +1,10 @@
 //! Plans without ranks: counts against an obvious reference.
 
 use crate::common::random::Random;
-use whipple::comm::Comm;
-use whipple::domain::{
-    Balance, Decomposition, Mirrors, NestedSlabs, RankSpeeds, Sent, Tally, tally,
-};
-use whipple::model::{Axis, SymmetryPlane};
+use comm::Comm;
+use particles::{Mirrors};
+use engine::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds, Sent, Tally, tally};
+use model::{Axis, SymmetryPlane};
 
 /// Whether a place is within a range (m) of a box.
 fn is_near(place: [f64; 3], [lower, upper]: [[f64; 3]; 2], range: f64) -> bool {

@@ -1,7 +1,7 @@
 //! Mistakes of physics that are told before a run, each beside a case that is free of it.
 
-use whipple::input::parse;
-use whipple::preflight::{advice, approaches, warnings};
+use files::input::parse;
+use files::preflight::{advice, approaches, warnings};
 
 /// A bar flies at a plate, ten spacings away.
 const BAR: &str = r#"

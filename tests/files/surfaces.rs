@@ -68,8 +68,8 @@ fn of_quads(rows: u32, columns: u32, place: impl Fn(u32, u32) -> [f64; 3]) -> Tr
 
 /// Turned about an axis through the origin, as `turn` is.
 pub fn turned(triangles: &[Triangle], axis: [f64; 3], angle: f64) -> Triangles {
-    let turn = whipple::model::rotation(&axis.into(), angle);
-    let place = |x: [f64; 3]| (turn * whipple::model::Vec3::from(x)).into();
+    let turn = model::rotation(&axis.into(), angle);
+    let place = |x: [f64; 3]| (turn * model::Vec3::from(x)).into();
     triangles.iter().map(|t| t.map(place)).collect()
 }
 

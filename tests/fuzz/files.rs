@@ -12,15 +12,15 @@ use crate::changes::{self, Change, Kind, Shape, Store};
 use crate::guard;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
-use whipple::app::fragments::{self, FragmentsArgs};
-use whipple::app::plot::PlotArgs;
-use whipple::app::{compare::compare, info::describe, plot};
-use whipple::comm::Comm;
-use whipple::input::parse;
-use whipple::output::binary_table::{self, BinaryTable, Cells};
-use whipple::output::{Column, Rows, checkpoint, snapshot};
-use whipple::particles::ParticleStore;
-use whipple::step::{RunState, Simulation};
+use app::fragments::{self, FragmentsArgs};
+use app::plot::PlotArgs;
+use app::{compare::compare, info::describe, plot};
+use comm::Comm;
+use files::input::parse;
+use files::output::binary_table::{self, BinaryTable, Cells};
+use files::output::{Column, Rows, checkpoint, snapshot};
+use particles::ParticleStore;
+use engine::step::{RunState, Simulation};
 
 const CASE: &str = r#"
 dimension = 2

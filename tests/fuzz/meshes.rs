@@ -6,8 +6,8 @@ use std::path::Path;
 
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
-use whipple::input::parse;
-use whipple::preflight::{approaches, warnings};
+use files::input::parse;
+use files::preflight::{approaches, warnings};
 
 /// Longer files are not changed further.
 const LONGEST: usize = 20_000;

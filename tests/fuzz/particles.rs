@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::guard;
 use crate::random::Random;
 use crate::{Budget, Met, random};
-use whipple::input::parse;
+use files::input::parse;
 
 /// What takes the place of some bytes.
 const PIECES: &[&str] = &[

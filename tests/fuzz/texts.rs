@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
-use whipple::input::parse;
-use whipple::preflight::{advice, approaches, beginning, warnings};
+use files::input::parse;
+use files::preflight::{advice, approaches, beginning, warnings};
 
 /// What stands between two texts in a file of texts.
 const BETWEEN: &str = "\n#%%%%\n";
@@ -125,7 +125,7 @@ fn attempt(text: &str, overrides: &[String]) -> String {
         Ok(case) => case,
         Err(error) => return error.to_string(),
     };
-    let count = |body| whipple::populate::count(body, case.dimension, &case.symmetry, None);
+    let count = |body| populate::count(body, case.dimension, &case.symmetry, None);
     if case.bodies.iter().map(count).sum::<u64>() > MOST_PARTICLES {
         return "sound and large".to_owned();
     }

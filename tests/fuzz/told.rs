@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::changes::{Change, Kind, Shape, Store};
 use crate::files::{Bench, Recipe, Which};
-use whipple::output::h5::Content;
+use files::output::h5::Content;
 
 /// What `info` and what `restart` or `plot` say of a file with one change.
 fn said(bench: &Bench, file: Which, change: Change) -> [String; 2] {
@@ -263,7 +263,7 @@ fn a_body_without_a_name_and_a_title_that_commands_a_terminal_are_shown() {
     let describe = |change| {
         let [told, _] = said(&bench, Which::Snapshot, change);
         assert_eq!(told, "told");
-        whipple::app::info::describe(&bench.changed("state.vtkhdf")).unwrap()
+        app::info::describe(&bench.changed("state.vtkhdf")).unwrap()
     };
     let body = name("/VTKHDF/PointData/body");
     let text = describe(Change::Value(body, 0, u64::from(u32::MAX)));
@@ -295,7 +295,7 @@ fn a_file_that_ends_early_is_no_matter_of_locks() {
     let text = std::ffi::CString::new(path.to_str().unwrap()).unwrap();
     // SAFETY: the path ends with a zero.
     assert_eq!(unsafe { libc::mkfifo(text.as_ptr(), 0o600) }, 0);
-    let told = whipple::app::info::describe(&path).unwrap_err().to_string();
+    let told = app::info::describe(&path).unwrap_err().to_string();
     assert!(told.contains("it is a pipe"), "{told}");
     fs::remove_file(path).unwrap();
 }

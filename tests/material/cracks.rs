@@ -3,7 +3,7 @@
 
 use crate::support::{batch, material, step};
 use nalgebra::Matrix3;
-use whipple::material::{
+use material::{
     Crosses, Effect, Elastic, Eos, Flaws, GradyKipp, LANES, Linear, LinearForm, Material,
     PointBatch, Strength,
 };

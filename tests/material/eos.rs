@@ -1,6 +1,6 @@
 //! Equations of state: thermodynamic identity, join of the branches, strong compression.
 
-use whipple::material::{
+use material::{
     AfterSpall, Eos, Failure, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch, Spall,
     Strength, library,
 };

@@ -4,8 +4,8 @@
 use crate::exact::elastic::{self, Joint};
 use crate::exact::shocks::impact;
 use crate::exact::{ALUMINIUM, STEEL, medium};
-use whipple::exact::bars::{Bar, End, Row, Waves};
-use whipple::material::LinearForm::{self, DensityRatio, Logarithmic};
+use exact::bars::{Bar, End, Row, Waves};
+use material::LinearForm::{self, DensityRatio, Logarithmic};
 
 /// Steel on aluminium at ±`velocity`.
 fn row(form: LinearForm, velocity: f64, gap: f64) -> Row {

@@ -1,7 +1,7 @@
 //! The Riemann problem and Noh's implosion against published values and the jump conditions.
 
 use crate::exact::noh::Noh;
-use whipple::exact::riemann::{Gas, Riemann};
+use exact::riemann::{Gas, Riemann};
 
 fn gas(density: f64, velocity: f64, pressure: f64) -> Gas {
     Gas {
@@ -84,7 +84,7 @@ fn sod_has_its_waves_and_a_profile() {
         (1.0, 0.125)
     );
     // Mass, and momentum given by the difference of the pressures at the ends, by trapezia.
-    let integral = |f: &dyn Fn(&whipple::exact::Sample) -> f64| -> f64 {
+    let integral = |f: &dyn Fn(&exact::Sample) -> f64| -> f64 {
         let pairs = profile.windows(2);
         pairs
             .map(|p| 0.5 * (f(&p[0]) + f(&p[1])) * (p[1].position - p[0].position))

@@ -1,9 +1,9 @@
 //! Plane impact of Mie–Grüneisen materials against tabulated figures and the jump conditions.
 
 use crate::exact::release::free_surface_velocity;
-use whipple::exact::hugoniot::{Medium, impact};
-use whipple::exact::plates::{Plate, profile};
-use whipple::material::library;
+use exact::hugoniot::{Medium, impact};
+use exact::plates::{Plate, profile};
+use material::library;
 
 fn medium(name: &str) -> Medium {
     Medium::of(&library::find(name).unwrap()).unwrap()
@@ -134,7 +134,7 @@ fn plates_carry_their_shocks_from_a_gap_on() {
     assert!((a[3].pressure / b[0].pressure - 1.0).abs() < 1e-12);
     assert_eq!(a[3].velocity, b[0].velocity);
     // Mass, momentum and energy (at equal areas) are those of the start.
-    let sum = |f: &dyn Fn(&whipple::exact::Sample) -> f64| -> f64 {
+    let sum = |f: &dyn Fn(&exact::Sample) -> f64| -> f64 {
         let fragments = after.iter().flat_map(|line| line.windows(2));
         fragments
             .map(|p| 0.5 * (f(&p[0]) + f(&p[1])) * (p[1].position - p[0].position))

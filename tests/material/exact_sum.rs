@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp)] // the sums are exact
 
 use proptest::prelude::*;
-use whipple::numerics::exact_sum::{ExactSum, LIMBS};
+use numerics::exact_sum::{ExactSum, LIMBS};
 use xsum::{Xsum, XsumLarge, XsumSmall};
 
 fn sum_of(terms: &[f64]) -> ExactSum {

@@ -5,7 +5,7 @@
 
 use crate::support::{batch, equivalent, material, step, stress};
 use nalgebra::Matrix3;
-use whipple::material::{
+use material::{
     AfterSpall, Effect, Elastic, Eos, JohnsonCookFailure, LANES, Linear, LinearForm, Material,
     Molten, PlasticStrain, PrincipalStress, RateForm, Spall, Strength, Thermal, ThermalConstants,
     VonMises,

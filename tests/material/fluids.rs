@@ -2,7 +2,7 @@
 
 use crate::support::{batch, equations_of_state, material, step, stress, tillotson};
 use nalgebra::Matrix3;
-use whipple::material::{Eos, IdealGas, Strength, Tait, Viscous};
+use material::{Eos, IdealGas, Strength, Tait, Viscous};
 
 #[test]
 fn derivatives_are_those_of_the_pressure() {

@@ -3,7 +3,7 @@
 
 use crate::support::{aluminium, batch, equivalent, material, set_gradient, step, stress};
 use nalgebra::{Matrix3, Vector3};
-use whipple::material::{
+use material::{
     AfterSpall, Eos, JohnsonCook, LANES, Material, Spall, SteinbergGuinan, Strength, Thermal,
     ThermalConstants,
 };

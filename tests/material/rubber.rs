@@ -2,7 +2,7 @@
 
 use crate::support::{batch, material, set_gradient, step, stress};
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use whipple::material::{Eos, LANES, Linear, LinearForm, Material, NeoHookean, Strength};
+use material::{Eos, LANES, Linear, LinearForm, Material, NeoHookean, Strength};
 
 const RHO: f64 = 1010.0;
 const C0: f64 = 852.0;

@@ -3,7 +3,7 @@
 
 use crate::support::{batch, equivalent, material, set_gradient, step};
 use nalgebra::Matrix3;
-use whipple::material::{
+use material::{
     AfterSpall, Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Spall, Strength,
     Value, library,
 };

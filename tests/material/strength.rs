@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp)] // where nothing may change, not a bit does
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use whipple::material::{
+use material::{
     Elastic, Eos, Failure, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
 };
 

@@ -1,7 +1,7 @@
 //! Batches of one state in all lanes, for tests at a point.
 
 use nalgebra::Matrix3;
-use whipple::material::{
+use material::{
     Eos, Failure, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch,
     Strength, Tait, Tillotson,
 };

@@ -1,11 +1,11 @@
 //! The cold curve and the temperature.
 
 use crate::support::{aluminium, equations_of_state, material};
-use whipple::material::{
+use material::{
     AfterSpall, Eos, IdealGas, LANES, Linear, LinearForm, PointBatch, Spall, Strength, Thermal,
     ThermalConstants,
 };
-use whipple::numerics::lanes::{F64x8, Lanes};
+use numerics::lanes::{F64x8, Lanes};
 
 const CONSTANTS: ThermalConstants = ThermalConstants {
     specific_heat: 875.0,

@@ -3,10 +3,10 @@
 
 use crate::common::outcome::CASES;
 use crate::ranks::on_each;
-use whipple::comm::Comm;
-use whipple::model::Case;
-use whipple::numerics::alone::visited;
-use whipple::step::Simulation;
+use comm::Comm;
+use model::Case;
+use numerics::alone::visited;
+use engine::step::Simulation;
 
 /// Steps of each case: balances, searches for parts and the order of the store come in them.
 const STEPS: u64 = 22;

@@ -9,15 +9,14 @@ use crate::common::outcome::{CASES, Outcome, rubbing};
 use crate::common::random::Random;
 use crate::common::sentinel::{id, mix, sentinel};
 use crate::ranks::on_each;
-use whipple::comm::{Comm, Exchange, Joint, waited};
-use whipple::domain::{
-    Balance, Decomposition, Halo, Migration, Mirrors, NestedSlabs, RankSpeeds, Reaches,
-};
-use whipple::model::{Axis, Overlap, SelfContact, SymmetryPlane};
-use whipple::particles::{
+use comm::{Comm, Exchange, Joint, waited};
+use particles::{Mirrors};
+use engine::domain::{Balance, Decomposition, Halo, Migration, NestedSlabs, RankSpeeds, Reaches};
+use model::{Axis, Overlap, SelfContact, SymmetryPlane};
+use particles::{
     Asleep, FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
 };
-use whipple::step::{Simulation, Timers};
+use engine::step::{Simulation, Timers};
 
 /// Particles of the tests, spread over a box of this many units.
 const TOTAL: u64 = 400;

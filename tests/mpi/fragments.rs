@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use whipple::output::binary_table::BinaryTable;
+use files::output::binary_table::BinaryTable;
 
 use crate::program::WHIPPLE;
 

@@ -7,13 +7,13 @@ use std::process::Command;
 use crate::ranks::{is_rank, on_ranks};
 use crate::sentinel::{id, sentinel};
 use crate::stored::{case, meta, particles, sorted_ids};
-use whipple::comm::Comm;
-use whipple::model::{Precision, Sharing};
-use whipple::output::h5::read::SnapshotFile;
-use whipple::output::h5::{Content, Element, RowType};
-use whipple::output::snapshot::{Form, Part};
-use whipple::output::{Block, OutputError, Rows, checkpoint, snapshot};
-use whipple::particles::{FIELDS, Life, ParticleStore, rows};
+use comm::Comm;
+use model::{Precision, Sharing};
+use files::output::h5::read::SnapshotFile;
+use files::output::h5::{Content, Element, RowType};
+use files::output::snapshot::{Form, Part};
+use files::output::{Block, OutputError, Rows, checkpoint, snapshot};
+use particles::{FIELDS, Life, ParticleStore, rows};
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.
 const TOTALS: [u64; 4] = [0, 1, 7, 1000];

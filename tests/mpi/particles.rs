@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::program::{assert_same, command, end, ranks};
-use whipple::output::h5::read::SnapshotFile;
+use files::output::h5::read::SnapshotFile;
 
 const FIRST: &str = r#"
 dimension = 3

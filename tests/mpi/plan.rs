@@ -2,11 +2,11 @@
 
 use crate::common::outcome::{everything, rubbing, stress_points};
 use crate::ranks::on_each;
-use whipple::comm::{Comm, Traffic};
-use whipple::model::Case;
-use whipple::plan::{Load, Particles, loads, loads_of, slabs_at_start, slabs_of};
-use whipple::sph::Smoothing;
-use whipple::step::{Simulation, bytes_of_messages};
+use comm::{Comm, Traffic};
+use model::Case;
+use files::plan::{Load, Particles, loads, loads_of, slabs_at_start, slabs_of};
+use engine::sph::Smoothing;
+use engine::step::{Simulation, bytes_of_messages};
 
 /// Steps that are compared, through the impact and several balances.
 const STEPS: usize = 50;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use whipple::comm::{Comm, Session, abort_job};
+use comm::{Comm, Session, abort_job};
 
 const FOLDER: &str = "WHIPPLE_TEST_FOLDER";
 

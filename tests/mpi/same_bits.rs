@@ -323,8 +323,8 @@ fn many_gauges_on_any_ranks_and_through_a_restart() {
     assert_same_in_legs(&case, &[2, 3], &["0.03us"], &one, &stopped);
     let [a, b] = [&one, &stopped].map(|run| {
         assert!(!run.join("gauges.csv").exists());
-        let run = whipple::output::RunFolder::at(run);
-        let sheet = whipple::output::gauge_records::sheet(&run, None);
+        let run = files::output::RunFolder::at(run);
+        let sheet = files::output::gauge_records::sheet(&run, None);
         sheet.expect("files").expect("readings")
     });
     assert!(a.rows.len() > 1000, "{}", a.rows.len());

@@ -3,7 +3,7 @@
 
 use crate::physics_support::absorbing::{Packet, Wave, returned};
 use crate::physics_support::{inline, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// What may come back of a wave at a right angle, over its amplitude.
 const NORMAL: f64 = 0.02;

@@ -3,7 +3,7 @@
 //! µs, then corners, plastic flow along the interface, and parting.
 
 use crate::physics_support::{ready, run_to, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Stress and pressure on the axis behind the elastic precursor and the plastic wave (Pa): a
 /// one-dimensional reference of the same law.

@@ -1,8 +1,8 @@
 //! What contact must show (physics page, section 5), at small scale.
 
 use crate::physics_support::{inline, ready, run_with, start};
-use whipple::comm::Comm;
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::step::Simulation;
 
 /// Particles of every body keep their bits when nothing moves.
 fn assert_at_rest(text: &str) {

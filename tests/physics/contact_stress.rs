@@ -3,9 +3,9 @@
 
 use crate::physics_support::bars::interface_force;
 use crate::physics_support::{inline, ready, run_to, sorted_by, start};
-use whipple::comm::Comm;
-use whipple::exact::hugoniot::{Medium, impact};
-use whipple::step::Simulation;
+use comm::Comm;
+use exact::hugoniot::{Medium, impact};
+use engine::step::Simulation;
 
 /// Both forms, and how far from the plateau the layers in contact may be.
 const FORMS: [&str; 2] = ["conventional", "corrected"];

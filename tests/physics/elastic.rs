@@ -2,7 +2,7 @@
 
 use crate::physics_support::bars::{STEEL_SPEED, STEP, bar_velocities, step_bar};
 use crate::physics_support::{lattice_factor, ready, run_to, slope, start};
-use whipple::model::SphForm;
+use model::SphForm;
 
 /// Speed (m/s) at which half of the step runs along the undisturbed bar.
 fn wave_speed(form: SphForm, smoothing: f64) -> f64 {

@@ -110,7 +110,7 @@ fn mistakes_are_told() {
                 friction,
                 angle: 0.0,
             };
-            let error = whipple::input::parse("test.toml", &slope.text(0.0), &[]);
+            let error = files::input::parse("test.toml", &slope.text(0.0), &[]);
             let error = error.expect_err("a mistake").to_string();
             assert!(error.contains(told), "{error}");
         }

@@ -2,7 +2,7 @@
 //! momentum stays to rounding.
 
 use crate::physics_support::{inline, run_to, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// A bar of 40 x 8 (x 8) mm at rest and a block that hits it from below at a twentieth of the speed of sound.
 /// `half`: a symmetry plane at z = 0.

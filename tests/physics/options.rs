@@ -4,10 +4,10 @@
 use crate::common::outcome::{advance, start};
 use crate::common::random::Random;
 use crate::common::{SPACING, ball, body, case, make_elastic, planes};
-use whipple::comm::Comm;
-use whipple::material::{Eos, MieGruneisen, Strength};
-use whipple::model::{Axis, Case, ContactMode, Shape, SmoothingLength, SphForm, Vec3};
-use whipple::step::Simulation;
+use comm::Comm;
+use material::{Eos, MieGruneisen, Strength};
+use model::{Axis, Case, ContactMode, Shape, SmoothingLength, SphForm, Vec3};
+use engine::step::Simulation;
 
 /// A box around the origin in two dimensions; edges in spacings.
 fn rectangle(x: f64, y: f64) -> Case {

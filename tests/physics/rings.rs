@@ -1,7 +1,7 @@
 //! Rubber rings that collide (`inputs/rubber-rings`): they rebound whole.
 
 use crate::physics_support::{ready, run_to, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Number of connected pieces of a body whose particles are linked when they are nearer than
 /// `reach` (m).
@@ -9,7 +9,7 @@ fn fragments(s: &Simulation, body: u32, reach: f64) -> usize {
     let of_body = |&i: &usize| s.particles.body[i] == body;
     let particles = (0..s.particles.owned()).filter(of_body);
     let points: Vec<[f64; 3]> = particles.map(|i| s.particles.position[i]).collect();
-    whipple::fragments::components(&points, reach).len()
+    engine::fragments::components(&points, reach).len()
 }
 
 /// Mean velocity of a body along x (m/s).

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::physics_support::{inline, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 const SOFT: &str = r#"
 [material.soft]
@@ -225,7 +225,7 @@ fn mistakes_are_told() {
              {SOFT}{}",
             block("bar", -12.0, 12.0)
         );
-        let error = whipple::input::parse("test.toml", &text, &[]).expect_err("a mistake");
+        let error = files::input::parse("test.toml", &text, &[]).expect_err("a mistake");
         assert!(error.to_string().contains(told), "{error}");
     }
 }

@@ -3,11 +3,11 @@
 
 use crate::common::{SPACING, body, case, make_elastic};
 use crate::physics_support::{inline, run_with, sorted_by, start};
-use whipple::comm::Comm;
-use whipple::diagnose::Worst;
-use whipple::material::{AfterSpall, Spall};
-use whipple::model::{Shape, SphForm, Vec3};
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::diagnose::Worst;
+use material::{AfterSpall, Spall};
+use model::{Shape, SphForm, Vec3};
+use engine::step::Simulation;
 
 /// Thickness h of the flyer (m), and half of that of the target.
 const H: f64 = 2e-3;

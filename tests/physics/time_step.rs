@@ -9,7 +9,7 @@ use crate::physics_support::steps::{
     ANY, Factors, Outcome, SMALL, SOLID, growth_of_noise, plateau,
 };
 use crate::physics_support::{inline, ready, start};
-use whipple::comm::Comm;
+use comm::Comm;
 
 /// Beyond the recommended factor by the margin of the rule.
 const MARGIN: f64 = 1.25;

@@ -4,7 +4,7 @@ use crate::physics_support::bars::{
     PLATEAU, STEP, axial_stress, force_on_right, in_one_piece, in_order, interface_force,
 };
 use crate::physics_support::{lattice_factor, ready, run_to, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Particles of each bar.
 const HALF: usize = 50;

@@ -3,7 +3,7 @@
 
 use crate::physics_support::absorbing::{Packet, Wave, returned};
 use crate::physics_support::{inline, start};
-use whipple::comm::Comm;
+use comm::Comm;
 
 /// Packets of .4 and .8 of the depth of the default zone, of which .05 and less come back at 45°.
 #[test]

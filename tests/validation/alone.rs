@@ -2,10 +2,10 @@
 
 use crate::common::process::in_its_own;
 use crate::project;
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::numerics::alone::visited;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use numerics::alone::visited;
+use engine::step::Simulation;
 
 /// Steps of each: balances, searches for parts and the order of the store come in them.
 const STEPS: u64 = 22;

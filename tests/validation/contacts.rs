@@ -7,10 +7,10 @@ use std::thread;
 
 use crate::physics_support::bars::{STEP, in_one_piece, in_order};
 use rayon::ThreadPoolBuilder;
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::model::Case;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use model::Case;
+use engine::step::Simulation;
 
 /// Names of the modes and what each changes.
 const MODES: &[(&str, &[&str])] = &[
@@ -238,7 +238,7 @@ fn sample(problem: &Problem, s: &Simulation, samples: &mut Vec<f64>) {
         let spacing = s.case.bodies[0].lattice.spacing;
         let water = (0..particles.owned()).filter(|&i| particles.body[i] == 0);
         let points: Vec<[f64; 3]> = water.map(|i| particles.position[i]).collect();
-        let front = whipple::plot::largest_reaches(&points, 0, spacing).unwrap_or(0.0);
+        let front = plot::largest_reaches(&points, 0, spacing).unwrap_or(0.0);
         // Distance of the front over the column's width, and Martin & Moyce's time of it over
         // √(a/2g).
         let measured = [(2.0, 1.71), (3.0, 2.52), (4.0, 3.21)];

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use crate::common::outcome::{advance, start};
 use crate::common::{body, case};
-use whipple::model::{Shape, Vec3};
-use whipple::step::Simulation;
+use model::{Shape, Vec3};
+use engine::step::Simulation;
 
 /// Spacings across the body.
 const ACROSS: f64 = 100.0;

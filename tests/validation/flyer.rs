@@ -2,7 +2,7 @@
 //! block so wide that its sides are not heard of.
 
 use crate::physics_support::{crossing, inline, median, run_with, slope, sorted_by, start};
-use whipple::exact::hugoniot::{Medium, impact};
+use exact::hugoniot::{Medium, impact};
 
 /// A quarter of two square blocks, `half` spacings wide and `length` long each, at 7 km/s along z.
 fn blocks(half: u32, length: u32, smoothing_length: &str) -> String {

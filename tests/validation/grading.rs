@@ -1,7 +1,7 @@
 //! Graded spacing: waves pass, and a crater opens as in even matter.
 
 use crate::physics_support::{inline, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// A bar 24 mm long whose sides do not move, with a pulse that begins 5 mm from its end.
 fn bar(spacing: &str) -> Simulation {

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use crate::physics_support::{ready, run_with, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Radius of cylinder and disc (m).
 const RADIUS: f64 = 10e-3;

@@ -2,7 +2,7 @@
 
 use crate::physics_support::impact::{Layers, PLATE, SPHERE, hole_radius, main_job};
 use crate::physics_support::run_to;
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// End of the case (s).
 const END: f64 = 0.2e-6;

@@ -1,7 +1,7 @@
 //! Punch and die (`inputs/punch`): an elastic block in uniaxial strain, pressed by rigid surfaces.
 
 use crate::physics_support::{ready, run_with, start};
-use whipple::step::LoadState;
+use engine::step::LoadState;
 
 /// The die carries what the punch presses with, and both do the work that the block has got. The
 /// law of the block in uniaxial strain gives the force `A M ln(H/h)` and the work that is its

@@ -2,8 +2,8 @@
 
 use crate::common::virtual_ranks::on_virtual_ranks;
 use crate::physics_support::ready;
-use whipple::comm::Machine;
-use whipple::step::Simulation;
+use comm::Machine;
+use engine::step::Simulation;
 
 /// The quarter of the main job with this spacing on virtual ranks: in each step the counted work and the
 /// number of particles of each rank.

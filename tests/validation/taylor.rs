@@ -1,7 +1,7 @@
 //! The Taylor bar of copper (`inputs/taylor-bar`) against what published codes give.
 
 use crate::physics_support::{median, ready, run_to, start};
-use whipple::step::Simulation;
+use engine::step::Simulation;
 
 /// Radius of the rod (m).
 const RADIUS: f64 = 3.2e-3;

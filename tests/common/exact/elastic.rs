@@ -21,7 +21,7 @@
 
 mod solver;
 
-pub use whipple::exact::bars::End;
+pub use exact::bars::End;
 
 use super::steps::Steps;
 use solver::Solver;

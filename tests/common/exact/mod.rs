@@ -7,8 +7,8 @@ pub mod release;
 pub mod shocks;
 mod steps;
 
-use whipple::exact::finite_strain::Medium;
-use whipple::material::LinearForm;
+use exact::finite_strain::Medium;
+use material::LinearForm;
 
 /// Young's modulus (Mbar), Poisson's ratio, density (g/cm³).
 pub const STEEL: [f64; 3] = [2.1, 0.28, 7.83];

@@ -6,7 +6,7 @@
 //! strong shocks using an artificial viscosity and an artificial heat flux*, J. Comput. Phys. 72,
 //! 78, section 4.
 
-use whipple::exact::Sample;
+use exact::Sample;
 
 /// The implosion.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
 //! Isentropic release of a shocked Mie–Grüneisen material at a free surface.
 
-use whipple::exact::hugoniot::{Impact, Medium, Shock};
+use exact::hugoniot::{Impact, Medium, Shock};
 
 /// Steps of the fourth-order integration along a release isentrope.
 const STEPS: u32 = 1000;

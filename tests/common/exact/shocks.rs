@@ -1,8 +1,8 @@
 //! The impact of two elastic bars in uniaxial strain with the program's own laws: the first shocks
 //! and the release fan behind them, in closed form.
 
-use whipple::exact::bisect;
-use whipple::exact::finite_strain::Medium;
+use exact::bisect;
+use exact::finite_strain::Medium;
 
 /// The state behind a shock into a [`Medium`] at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]

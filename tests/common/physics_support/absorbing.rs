@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use whipple::comm::Comm;
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::step::Simulation;
 
 use super::{inline, start};
 

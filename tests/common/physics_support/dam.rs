@@ -1,7 +1,7 @@
 //! The breaking dam, `inputs/dam-break`, and what is measured on it.
 
-use whipple::plot::largest_reaches;
-use whipple::step::Simulation;
+use plot::largest_reaches;
+use engine::step::Simulation;
 
 use super::{ready, run_with, start};
 

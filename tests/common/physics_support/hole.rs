@@ -5,7 +5,7 @@
 //! thickness about its first mid-plane count, so that debris which has left the plate does not
 //! close the hole.
 
-use whipple::numerics::exact_sum::ExactSum;
+use numerics::exact_sum::ExactSum;
 
 /// A flat plate as it was before the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use whipple::model::Shape;
-use whipple::step::Simulation;
+use model::Shape;
+use engine::step::Simulation;
 
 use super::hole::Plate;
 use super::{median, ready, start};

@@ -8,11 +8,11 @@ pub mod impact;
 pub mod slope;
 pub mod steps;
 
-use whipple::comm::Comm;
-use whipple::input;
-use whipple::model::Case;
-use whipple::numerics::kernel::Kernel;
-use whipple::step::Simulation;
+use comm::Comm;
+use files::input;
+use model::Case;
+use numerics::kernel::Kernel;
+use engine::step::Simulation;
 
 /// The case `inputs/<name>/case.toml` with overrides.
 pub fn ready(name: &str, overrides: &[&str]) -> Case {

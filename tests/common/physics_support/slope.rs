@@ -1,8 +1,8 @@
 //! A soft block on a slope, whose weight is a hundredth of its stiffness; two dimensions. Gravity
 //! has a component along the slope.
 
-use whipple::comm::Comm;
-use whipple::step::Simulation;
+use comm::Comm;
+use engine::step::Simulation;
 
 use super::{inline, run_with, slope, start};
 

@@ -1,8 +1,8 @@
 //! What a longer time step does to a run: used by the tests of the step's factors.
 
-use whipple::comm::Comm;
-use whipple::model::Case;
-use whipple::step::Simulation;
+use comm::Comm;
+use model::Case;
+use engine::step::Simulation;
 
 use super::impact::{SPHERE, hole_radius};
 use super::{bars::BAR_MATERIALS, inline, median, ready, run_with, sorted_by, start};

@@ -1,4 +1,4 @@
-//! Which instructions the program has. This is no part of `main.rs`, which needs no program: it goes with tests of the program.
+//! Vector instructions of the program stand inside its kernels.
 
 /// Kernels are compiled for an instruction set only where all of them lands inside one function: a closure,
 /// or what an array method calls, may be compiled apart, and then each operation on vectors is a call.
@@ -10,7 +10,7 @@ fn no_vector_instruction_is_called_as_a_function() {
         .expect("nm, which comes with the linker");
     assert!(listed.status.success(), "{listed:?}");
     let symbols = String::from_utf8_lossy(&listed.stdout);
-    assert!(symbols.contains("whipple"), "a program without symbols");
+    assert!(symbols.contains("engine::"), "a program without symbols");
     // What asks the processor for its instruction sets is a function.
     let called: Vec<&str> = symbols
         .lines()
