@@ -3,22 +3,65 @@
 # plain cargo and a summary of our own. `make test` calls it in the environment of jobs/env.sh. The
 # feature lets tests put faults into the program (src/run/fault.rs), which a user's has not.
 #
-#   jobs/cargo-test.sh [--ignored]      --ignored: only the slow tests
+#   jobs/cargo-test.sh                  the first tier
+#   jobs/cargo-test.sh --ignored        the second tier, the slow tests, alone
+#   jobs/cargo-test.sh --rotating       the first tier and a tenth of the second, which the hash of
+#                                       the commit chooses (WHIPPLE_TENTH=1…10 does so by hand);
+#                                       it leaves out what takes more than three minutes by itself
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+tier=${1:-first}
 build=(--locked --features fault-injection)
+log=target/test.log
+# Tests of the second tier that no tenth may have: each takes more than three minutes.
+too_long='LONG'
+
+# The tenth of this commit.
+tenth() {
+    local commit
+    commit=$(git rev-parse HEAD 2>/dev/null || echo 0)
+    echo "${WHIPPLE_TENTH:-$((16#${commit:0:7} % 10 + 1))}"
+}
+
+# Of the tests on standard input, one a line, those of the tenth $1.
+share() {
+    grep -vE "$too_long" | sort | awk -v tenth="$1" 'NR % 10 == tenth % 10' || true
+}
+
+mkdir -p target
+code=0
 if cargo nextest --version >/dev/null 2>&1; then
-    if [ "${1:-}" = --ignored ]; then
-        exec cargo nextest run "${build[@]}" --run-ignored only
+    if [ "$tier" = --ignored ]; then
+        exec cargo nextest run "${build[@]}" --run-ignored only --final-status-level pass
     fi
     cargo test "${build[@]}" --doc
-    exec cargo nextest run "${build[@]}"
+    if [ "$tier" != --rotating ]; then
+        exec cargo nextest run "${build[@]}"
+    fi
+    # Of each line the last word is the name of the test with its module.
+    slow=$(cargo nextest list "${build[@]}" --run-ignored only --message-format oneline | awk '{ print $NF }')
+    chosen=$(share "$(tenth)" <<<"$slow")
+    others=$(grep -vxF "${chosen:-none}" <<<"$slow" | sed 's/.*/test(=&)/' | paste -sd'|')
+    cargo nextest run "${build[@]}" --run-ignored all -E "not (${others:-none()})" 2>&1 | tee "$log" || code=$?
+    printf '\nOf the second tier, tenth %s:\n' "$(tenth)"
+    for test in $chosen; do
+        grep -m 1 -E "^ *[A-Z].* $test$" "$log" || echo "        no $test has run"
+    done
+    exit "$code"
 fi
 
-log=target/test.log
-code=0
-cargo test "${build[@]}" --no-fail-fast -- "$@" 2>&1 | tee "$log" || code=$?
+# One slow test at a time: some tell times.
+rest=()
+if [ "$tier" = --ignored ]; then rest=(--ignored --test-threads=1); fi
+cargo test "${build[@]}" --no-fail-fast -- "${rest[@]}" 2>&1 | tee "$log" || code=$?
+if [ "$tier" = --rotating ]; then
+    slow=$(cargo test "${build[@]}" --tests -- --ignored --list 2>/dev/null | sed -n 's/: test$//p')
+    mapfile -t chosen < <(share "$(tenth)" <<<"$slow")
+    printf '\nOf the second tier, tenth %s: %s\n' "$(tenth)" "${chosen[*]:-none}"
+    cargo test "${build[@]}" --no-fail-fast --tests -- --ignored --test-threads=1 --exact "${chosen[@]:-none}" 2>&1 |
+        tee -a "$log" || code=$?
+fi
 awk '/^test .* \.\.\. FAILED$/ { failures = failures "\n  FAILED " $2 }
      /^test result:/ { binaries++; passed += $4; failed += $6; ignored += $8 }
      END { printf "\nSummary: %d test binaries, %d passed, %d failed, %d skipped%s\n",
