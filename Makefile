@@ -4,7 +4,7 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check validation fuzz fuzz-memory soak pictures image deb contact-lab bench bench-kernels docs book clean
+.PHONY: help deps test-deps release impact test run-tests check check-fast validation fuzz fuzz-memory soak pictures image deb contact-lab bench bench-kernels docs book clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
@@ -26,11 +26,16 @@ impact: release ## Run the main job on two ranks, draw its pictures, write the p
 
 test: run-tests ## Run the test suite, about eight minutes on two cores
 
+check-fast: test-deps ## What takes a minute after an edit: format, lints, the unit tests of all crates
+	$(ENV) cargo fmt --all --check
+	$(ENV) cargo clippy --locked --workspace -- -D warnings
+	$(ENV) cargo nextest run --locked --workspace --lib
+
 check: ## What must pass before a change lands: format, lints, documentation, tests
 check: test-deps
-	$(ENV) cargo fmt --check
-	$(ENV) cargo clippy --locked --all-targets -- -D warnings
-	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+	$(ENV) cargo fmt --all --check
+	$(ENV) cargo clippy --locked --workspace --all-targets -- -D warnings
+	$(ENV) RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
 	$(MAKE) run-tests
 
 fuzz: test-deps ## Read random inputs, surfaces and files of results for ten minutes each; new ones stay in tests/fuzz/
@@ -64,7 +69,7 @@ bench-kernels: deps ## Time the inner loops alone, for each instruction set
 	$(ENV) cargo bench --locked -p whipple-bench
 
 docs: deps book ## Build the book (target/book) and the API documentation (target/doc)
-	$(ENV) cargo doc --locked --no-deps
+	$(ENV) cargo doc --locked --workspace --no-deps
 
 # The book alone. A page that reaches for the network, or an equation that is not typeset, is an error.
 book: $(TOOLS)/ready-$(MDBOOK)-$(MDBOOK_KATEX)

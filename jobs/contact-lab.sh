@@ -209,5 +209,5 @@ draw contact-seam contact-lab/seam.toml '0.1 us'
 "$whipple" plot "$folder/hertz-disc" --field von_mises --width 760 --out "$pictures/hertz-disc.png"
 
 # Every mode on every problem.
-cargo test --locked --test validation_contacts -- --ignored --nocapture |
+cargo test --locked --test validation contacts:: -- --ignored --nocapture |
     sed -nE '/^## /,/^test /{/^test /!p}' | tee -a "$table"
