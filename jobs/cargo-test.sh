@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs the tests and ends with what ran: with cargo-nextest where it is installed, else with
-# plain cargo and a summary of our own. `make test` calls it in the environment of jobs/env.sh. The
-# feature lets tests put faults into the program (src/run/fault.rs), which a user's has not.
+# plain cargo and a summary of our own. `make test` calls it in the environment of jobs/env.sh. Builds
+# of tests can put faults into the program (src/files/run/fault.rs), which a user's cannot.
 #
 #   jobs/cargo-test.sh                  the first tier
 #   jobs/cargo-test.sh --ignored        the second tier, the slow tests, alone
@@ -12,7 +12,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tier=${1:-first}
-build=(--locked --features fault-injection)
+build=(--locked --workspace)
 log=target/test.log
 # Tests of the second tier that no tenth may have: each takes more than three minutes.
 too_long='LONG'
@@ -35,7 +35,6 @@ if cargo nextest --version >/dev/null 2>&1; then
     if [ "$tier" = --ignored ]; then
         exec cargo nextest run "${build[@]}" --run-ignored only --final-status-level pass
     fi
-    cargo test "${build[@]}" --doc
     if [ "$tier" != --rotating ]; then
         exec cargo nextest run "${build[@]}"
     fi

@@ -47,7 +47,7 @@ fn a_panic_on_one_rank_ends_all() {
         let ended = end(command.args(["--threads", threads]));
         assert_eq!(ended.code, Some(101), "{ended:#?}");
         let line = only_line(&ended);
-        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/run/fault.rs:");
+        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/files/run/fault.rs:");
         assert!(line.starts_with(&begin), "{line}");
         // What runs on how many ranks, and how these share out space.
         assert_eq!(ended.stdout.lines().count(), number.min(2), "{ended:#?}");

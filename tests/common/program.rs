@@ -58,7 +58,7 @@ pub fn command(program: &str) -> Command {
     command
 }
 
-/// Lets a rank of a command meet a fault, see `src/run/fault.rs`.
+/// Lets a rank of a command meet a fault, see `src/files/run/fault.rs`.
 #[track_caller]
 pub fn strike<'a>(command: &'a mut Command, fault: &str) -> &'a mut Command {
     let built = cfg!(debug_assertions);

@@ -24,7 +24,7 @@ impl Key {
 
 /// Every key of the schema that holds a value.
 pub fn keys() -> Vec<Key> {
-    let folder = crate::project::root().join("src/input");
+    let folder = crate::project::root().join("src/files/input");
     let mut files = vec![folder.join("schema.rs"), folder.join("schema")];
     let mut tables: BTreeMap<String, Vec<(String, String)>> = BTreeMap::new();
     while let Some(file) = files.pop() {

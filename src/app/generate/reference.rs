@@ -10,7 +10,7 @@ use files::input::{referred, stated};
 const HEAD: &str = "\
 # Input reference
 
-<!-- Written by `whipple generate reference`: change the schema (src/input/schema), not this page. -->
+<!-- Written by `whipple generate reference`: change the schema (src/files/input/schema), not this page. -->
 
 All tables and keys of a case, in alphabetical order within each table. This page is made from the same
 declarations that read the case, so it names every key that there is, and no other. The [input guide](input.md)
