@@ -9,7 +9,7 @@ use super::memory::Resident;
 use super::neighbours;
 use super::report::Row;
 use comm::Comm;
-use engine::step::{Phase, Simulation};
+use engine::step::{Phase, Simulation, measurements};
 use files::output::{RowSchedule, Rows, checkpoint, from_root};
 use particles::ParticleStore;
 
@@ -51,7 +51,7 @@ pub fn measure(
         None => stepped(comm, bench)?,
     };
     // Every sum is made, also those of a block at rest, which are zero.
-    simulation.lists.spare_quiescent = false;
+    simulation.search.lists.spare_quiescent = false;
     for _ in 0..WARM_UP {
         step(comm, &mut simulation)?;
     }
@@ -82,7 +82,7 @@ fn step(comm: &Comm, simulation: &mut Simulation) -> Result<(), String> {
     simulation.advance(comm).map_err(|e| e.to_string())?;
     let (step, now) = (simulation.state.step, simulation.state.time);
     if RowSchedule::of(&simulation.case).sums_are_due(step, before, now) {
-        simulation.diagnose(comm);
+        measurements::diagnose(simulation, comm);
     }
     simulation.timers.lap(Phase::Output);
     Ok(())

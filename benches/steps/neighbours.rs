@@ -26,7 +26,7 @@ pub fn true_mean(comm: &Comm, simulation: &Simulation) -> f64 {
 #[allow(clippy::cast_precision_loss, reason = "a mean")]
 pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
     let mut sums = [
-        simulation.lists.entries(),
+        simulation.search.lists.entries(),
         simulation.particles.owned() as u64,
     ];
     comm.sum_u64(&mut sums);

@@ -88,8 +88,8 @@ macro_rules! particle_fields {
             pub(super) owned: usize,
             pub(super) halo: usize,
             pub(super) unused: Owner,
-            /// Owned particles, the first ones, among which those that sleep stand where they did when that was last asked.
-            pub(super) settled: usize,
+            /// Number of the first owned particles among which the inactive ones stand where they did when it was last taken.
+            pub(super) unmoved: usize,
             $( $(#[doc = $doc])+ pub $name: Vec<kind_type!($kind)>, )+
         }
 

@@ -1,15 +1,15 @@
-//! What is worth keeping of particles that sleep: what blocks of them come to.
+//! Sums over blocks of inactive particles, kept from one use to the next.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::{Asleep, PART};
+use super::{Inactive, PART};
 
 /// Particles of a block.
 const BLOCK: usize = 32 * PART;
 
-/// What each block of the store whose particles all sleep comes to. Kept as long as they do.
+/// A value of each block of the store whose particles are all inactive. Kept as long as they are.
 #[derive(Debug)]
 pub struct KeptBlocks<T> {
     blocks: Vec<Option<Box<Kept<T>>>>,
@@ -18,7 +18,7 @@ pub struct KeptBlocks<T> {
 #[derive(Debug)]
 struct Kept<T> {
     value: T,
-    /// See [`Asleep::since`].
+    /// See [`Inactive::since`].
     since: u64,
 }
 
@@ -41,13 +41,13 @@ impl<T: Send> KeptBlocks<T> {
     pub fn each<'a>(
         &'a mut self,
         owned: usize,
-        asleep: &'a Asleep,
+        inactive: &'a Inactive,
     ) -> impl ParallelIterator<Item = Block<'a, T>> {
         self.blocks.resize_with(owned.div_ceil(BLOCK), || None);
         let blocks = self.blocks.par_iter_mut().enumerate();
         blocks.map(move |(k, kept)| {
             let places = k * BLOCK..((k + 1) * BLOCK).min(owned);
-            let since = asleep.since(&places);
+            let since = inactive.since(&places);
             Block {
                 kept,
                 places,
@@ -71,7 +71,7 @@ impl<T> Block<'_, T> {
         self.places.clone()
     }
 
-    /// What it comes to, if all of it sleeps and that is worth keeping: what `of` gives, asked once.
+    /// Its value, if all of it is inactive and the value is worth keeping: that of `of`, which is called once.
     pub fn kept(&mut self, of: impl FnOnce(Range<usize>) -> Option<T>) -> Option<&T> {
         let Some(since) = self.since else {
             *self.kept = None;
@@ -90,8 +90,8 @@ mod tests {
     use super::*;
 
     /// Places that were asked for.
-    fn asked(kept: &mut KeptBlocks<usize>, owned: usize, asleep: &Asleep) -> Vec<usize> {
-        let blocks = kept.each(owned, asleep);
+    fn asked(kept: &mut KeptBlocks<usize>, owned: usize, inactive: &Inactive) -> Vec<usize> {
+        let blocks = kept.each(owned, inactive);
         let first = blocks.filter_map(|mut block| {
             let mut is_asked = false;
             let first = block.places().start;
@@ -108,28 +108,28 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_asked_once_as_long_as_all_of_them_sleeps() {
-        let (mut kept, mut asleep) = (KeptBlocks::default(), Asleep::default());
+    fn blocks_are_asked_once_as_long_as_all_of_them_is_inactive() {
+        let (mut kept, mut inactive) = (KeptBlocks::default(), Inactive::default());
         let owned = 4 * BLOCK + 5;
-        assert!(asked(&mut kept, owned, &asleep).is_empty());
-        asleep.set(owned, |part, _| part >= 32);
+        assert!(asked(&mut kept, owned, &inactive).is_empty());
+        inactive.set(owned, |part, _| part >= 32);
         assert_eq!(
-            asked(&mut kept, owned, &asleep),
+            asked(&mut kept, owned, &inactive),
             [BLOCK, 2 * BLOCK, 3 * BLOCK]
         );
-        asleep.set(owned, |part, _| part >= 33);
-        assert!(asked(&mut kept, owned, &asleep).is_empty());
-        asleep.set(owned, |part, _| part >= 32);
-        // One part of a block wakes and falls asleep again before anybody asks.
-        asleep.set(owned, |part, _| part >= 32 && part != 70);
-        asleep.set(owned, |part, _| part >= 32);
-        assert_eq!(asked(&mut kept, owned, &asleep), [BLOCK, 2 * BLOCK]);
-        assert!(asked(&mut kept, owned, &asleep).is_empty());
+        inactive.set(owned, |part, _| part >= 33);
+        assert!(asked(&mut kept, owned, &inactive).is_empty());
+        inactive.set(owned, |part, _| part >= 32);
+        // One part of a block becomes active and inactive again before anybody asks.
+        inactive.set(owned, |part, _| part >= 32 && part != 70);
+        inactive.set(owned, |part, _| part >= 32);
+        assert_eq!(asked(&mut kept, owned, &inactive), [BLOCK, 2 * BLOCK]);
+        assert!(asked(&mut kept, owned, &inactive).is_empty());
         assert!(kept.memory() >= 3 * size_of::<Kept<usize>>());
-        asleep.clear();
-        assert!(asked(&mut kept, owned, &asleep).is_empty());
-        asleep.set(owned, |_, _| true);
-        assert_eq!(asked(&mut kept, owned, &asleep).len(), 4);
-        assert!(asked(&mut kept, owned - BLOCK, &asleep).is_empty());
+        inactive.clear();
+        assert!(asked(&mut kept, owned, &inactive).is_empty());
+        inactive.set(owned, |_, _| true);
+        assert_eq!(asked(&mut kept, owned, &inactive).len(), 4);
+        assert!(asked(&mut kept, owned - BLOCK, &inactive).is_empty());
     }
 }

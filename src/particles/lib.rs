@@ -1,12 +1,12 @@
 //! Particles as a structure of arrays: the table of fields and the store that walks it.
 
 mod arrays;
-mod asleep;
 mod columns;
 #[macro_use]
 mod declare;
 mod fields;
 mod image;
+mod inactive;
 mod kept_blocks;
 mod messages;
 mod mirrors;
@@ -18,10 +18,10 @@ mod select;
 mod store;
 
 pub use arrays::{SCRATCH_WORDS, empty, resize};
-pub use asleep::{Asleep, PART};
 pub use columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 pub use fields::{FIELDS, FieldId, FieldInfo, ParticleStore};
 pub use image::{HaloImages, Image};
+pub use inactive::{Active, ActiveMut, Inactive, PART};
 pub use kept_blocks::{Block, KeptBlocks};
 pub use messages::copy_at_once;
 pub use mirrors::{MirrorForce, Mirrors, codes};

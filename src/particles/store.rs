@@ -146,7 +146,7 @@ impl ParticleStore {
     /// # Panics
     /// If `scratch` is too short.
     pub fn keep(&mut self, order: &[u32], scratch: &mut [u64]) {
-        self.settled = 0;
+        self.unmoved = 0;
         self.rearrange(order, scratch);
     }
 
@@ -166,11 +166,11 @@ impl ParticleStore {
         self.resize_owned(order.len());
     }
 
-    /// Among how many owned particles, the first ones, those that sleep stand where they did when this was last asked.
-    pub fn settled(&mut self) -> usize {
-        let settled = self.settled.min(self.owned);
-        self.settled = usize::MAX;
-        settled
+    /// Number of the first owned particles among which the inactive ones stand where they did at the last call.
+    pub fn take_unmoved(&mut self) -> usize {
+        let unmoved = self.unmoved.min(self.owned);
+        self.unmoved = usize::MAX;
+        unmoved
     }
 
     /// Removes owned particles and the halo; the last ones take the places of those `leaving`
@@ -179,7 +179,7 @@ impl ParticleStore {
         self.resize_halo(0);
         leaving.sort_unstable();
         let left = self.owned - leaving.len();
-        self.settled = self.settled.min(left);
+        self.unmoved = self.unmoved.min(left);
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let (left_u32, owned) = (left as u32, self.owned as u32);
         let (holes, gone) = leaving.split_at(leaving.partition_point(|&i| i < left_u32));

@@ -117,8 +117,8 @@ impl Connectivity {
         });
     }
 
-    /// Takes over who hangs together with whom.
-    pub(crate) fn tell(members: &Members, particles: &mut ParticleStore) {
+    /// Labels owned particles by the sets that links have joined.
+    pub(crate) fn set_labels(members: &Members, particles: &mut ParticleStore) {
         let owned = particles.owned();
         let parts = particles.part[..owned].par_iter_mut();
         let parts = parts.zip(&mut particles.part_planes[..owned]);
@@ -193,7 +193,7 @@ impl Connectivity {
         self.is_active
     }
 
-    /// Whether fragments are to be told at a step, from lists of all particles that are awake.
+    /// Whether pieces are to be labelled at a step, from lists of all active particles.
     pub(crate) fn is_due(&self, step: u64) -> bool {
         self.is_active && step.is_multiple_of(EVERY)
     }

@@ -19,7 +19,7 @@ pub(crate) use post_mortem::PAST_STEPS;
 pub use post_mortem::{PastStep, PostMortem};
 pub use reason::Reason;
 pub use remembered::Remembered;
-pub(crate) use step_sums::{Booked, StepSums};
+pub(crate) use step_sums::{Booked, StepSums, Votes};
 pub use taken_out::{Leave, Removed};
 pub use totals::failed_mass;
 pub(crate) use totals::{KeptTotals, angular_momentum_scale};

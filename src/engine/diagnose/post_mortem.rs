@@ -50,7 +50,8 @@ impl PostMortem {
     /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others. `reach`
     /// (m) is how far neighbours are looked for.
     pub(crate) fn of(
-        (id, rank): (u64, usize),
+        id: u64,
+        rank: usize,
         particles: &ParticleStore,
         reach: f64,
         state: &RunState,

@@ -38,7 +38,20 @@ pub(crate) struct StepSums {
     joint: Joint,
 }
 
-/// What else a step adds up on each rank.
+/// What all ranks agree on at the end of a step with its sums: first those of this rank, then of all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Votes {
+    /// The first candidate for the next step, in the order of its words.
+    pub candidate: [u64; 3],
+    /// Requests of any rank (a set of bits).
+    pub requests: u64,
+    /// Sum of the counted work.
+    pub work: u64,
+    /// Largest load, which is the work of a rank over its speed.
+    pub load: u64,
+}
+
+/// Other sums of a step on each rank.
 pub(crate) struct Booked<'a> {
     pub contact: &'a mut Contact,
     pub loads: &'a mut Loads,
@@ -134,30 +147,23 @@ impl StepSums {
             .chain(&mut contact.sums.outside_torque)
     }
 
-    /// Joins the sums of all ranks, if there are any, with `first`, which becomes the first of all ranks'
-    /// words, `bits`, which become those of any rank, and `work` and load of this rank, which become
-    /// the sum of the one and the largest of the other. Collective.
-    pub fn join(
-        &mut self,
-        comm: &Comm,
-        booked: Option<&mut Booked>,
-        (first, bits): (&mut [u64; 3], &mut u64),
-        work: &mut [u64; 2],
-    ) {
+    /// Joins the sums of all ranks, if there are any, with the `votes` of this rank, which become those of
+    /// all. Collective.
+    pub fn join(&mut self, comm: &Comm, booked: Option<&mut Booked>, votes: &mut Votes) {
         let mut joint = std::mem::take(&mut self.joint);
         joint.sums.clear();
         joint.least.clear();
-        (joint.first, joint.bits) = (*first, *bits);
+        (joint.first, joint.bits) = (votes.candidate, votes.requests);
         match booked {
             Some(booked) if comm.size() > 1 => {
                 self.gather(booked, &mut joint);
-                join_with_work(comm, &mut joint, work);
+                join_with_work(comm, &mut joint, votes);
                 self.scatter(comm, booked, &joint);
             }
             Some(booked) => self.meet(comm, booked),
-            None => join_with_work(comm, &mut joint, work),
+            None => join_with_work(comm, &mut joint, votes),
         }
-        (*first, *bits) = (joint.first, joint.bits);
+        (votes.candidate, votes.requests) = (joint.first, joint.bits);
         self.joint = joint;
     }
 
@@ -273,12 +279,12 @@ impl StepSums {
 }
 
 /// Joins what ranks have, and with it the sum of their work and their largest load. Collective.
-fn join_with_work(comm: &Comm, joint: &mut Joint, [work, load]: &mut [u64; 2]) {
-    joint.sums.push(work.cast_signed());
-    joint.least.push(!*load);
+fn join_with_work(comm: &Comm, joint: &mut Joint, votes: &mut Votes) {
+    joint.sums.push(votes.work.cast_signed());
+    joint.least.push(!votes.load);
     comm.join(joint);
     let (sum, least) = (joint.sums.pop(), joint.least.pop());
-    (*work, *load) = (
+    (votes.work, votes.load) = (
         sum.unwrap_or_default().cast_unsigned(),
         !least.unwrap_or(u64::MAX),
     );

@@ -7,9 +7,9 @@ use comm::Comm;
 use material::FAILED;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::vector::{cross, norm};
-use particles::{Asleep, KeptBlocks, ParticleStore};
+use particles::{Active, KeptBlocks, ParticleStore};
 
-/// Sums of what sleeps, kept from one row to the next.
+/// Sums over inactive particles, kept from one row to the next.
 #[derive(Debug, Default)]
 pub(crate) struct KeptTotals {
     motion: KeptBlocks<[ExactSum; 11]>,
@@ -27,15 +27,14 @@ impl Totals {
     /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact
     /// (J). Collective.
     pub(crate) fn of(
-        particles: &ParticleStore,
-        (kept, asleep): (&mut KeptTotals, &Asleep),
+        active: Active,
+        kept: &mut KeptTotals,
         loads: &Loads,
         contact_energy: f64,
         comm: &Comm,
     ) -> Self {
-        let g = &loads.gravity;
-        let kept = (&mut kept.motion, asleep);
-        let mut sums = loads.sum_kept(particles, kept, |i| {
+        let (particles, g) = (active.particles, &loads.gravity);
+        let mut sums = loads.sum_kept(active, &mut kept.motion, |i| {
             let (m, v) = (particles.mass[i], &particles.velocity[i]);
             let x = &particles.position[i];
             let height = -(g[0] * x[0] + g[1] * x[1] + g[2] * x[2]);
@@ -73,16 +72,16 @@ impl Totals {
         }
     }
 
-    /// Adds the sums over matter that may fail. Collective.
+    /// Adds the sums over material that may fail. Collective.
     pub(crate) fn add_failure(
         &mut self,
-        particles: &ParticleStore,
-        (kept, asleep): (&mut KeptTotals, &Asleep),
+        active: Active,
+        kept: &mut KeptTotals,
         loads: &Loads,
         comm: &Comm,
     ) {
-        let kept = (&mut kept.failure, asleep);
-        let mut sums = loads.sum_kept(particles, kept, |i| {
+        let particles = active.particles;
+        let mut sums = loads.sum_kept(active, &mut kept.failure, |i| {
             let m = particles.thermal_mass(i);
             let failed = if particles.damage[i] >= FAILED {
                 m

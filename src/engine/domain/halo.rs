@@ -11,7 +11,9 @@ use super::nested::NestedSlabs;
 use super::shown::Shown;
 use comm::{Comm, Exchange, Traffic};
 use numerics::collector::Collector;
-use particles::{Asleep, HaloImages, HaloPhase, Image, Mirrors, ParticleStore, copy_at_once};
+use particles::{
+    Active, ActiveMut, HaloImages, HaloPhase, Image, Mirrors, ParticleStore, copy_at_once,
+};
 
 /// Where ranks stand: each has its particles in its own slab.
 #[derive(Debug, Clone, Copy)]
@@ -75,20 +77,21 @@ impl Halo {
     }
 
     /// Decides who needs whom and starts to send [`HaloPhase::MOTION`]. A pair of particles
-    /// interacts within the sum of their `reach` (m); nobody needs what is asleep. Collective.
+    /// interacts within the sum of their `reach` (m); nobody needs inactive particles. Collective.
     pub fn post_motion(
         &mut self,
         comm: &Comm,
         reaches: Reaches,
-        (particles, asleep): (&mut ParticleStore, &Asleep),
+        active: ActiveMut,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        particles.resize_halo(0);
+        active.particles.resize_halo(0);
+        let active = active.shared();
         self.rank = comm.rank();
-        self.find_extent(particles, &reach);
+        self.find_extent(active.particles, &reach);
         self.find_peers(comm, reaches);
-        self.choose((particles, asleep), &reach);
-        let (chosen, store) = (&self.chosen, &*particles);
+        self.choose(active, &reach);
+        let (chosen, store) = (&self.chosen, active.particles);
         fill(&mut self.exchange, |k, message| {
             message.extend_from_slice(&chosen.codes[chosen.of(k)]);
             store.pack(HaloPhase::MOTION, &chosen.particles[chosen.of(k)], message);
@@ -139,10 +142,15 @@ impl Halo {
         &mut self,
         comm: &Comm,
         reaches: Reaches,
-        (particles, asleep): (&mut ParticleStore, &Asleep),
+        active: ActiveMut,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        self.post_motion(comm, reaches, (particles, asleep), reach);
+        let (particles, inactive) = (active.particles, active.inactive);
+        let active = ActiveMut {
+            particles,
+            inactive,
+        };
+        self.post_motion(comm, reaches, active, reach);
         self.finish_motion(particles);
     }
 
@@ -328,12 +336,8 @@ impl Halo {
 
     /// Fills the lists of particles and images to send, and those of this rank's own images that
     /// stand near its own particles.
-    fn choose(
-        &mut self,
-        (particles, asleep): (&ParticleStore, &Asleep),
-        reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync),
-    ) {
-        let peers = self.peers.len();
+    fn choose(&mut self, active: Active, reach: &(impl Fn(&ParticleStore, usize) -> f64 + Sync)) {
+        let (particles, peers) = (active.particles, self.peers.len());
         self.own.clear();
         self.chosen.clear(peers);
         if peers == 0 && self.mirrors.is_empty() {
@@ -347,10 +351,12 @@ impl Halo {
             .enumerate()
             .for_each(|(task, (found, positions))| {
                 found.clear();
-                asleep.each_awake(task * SHARE, positions.len(), |k| {
-                    let i = task * SHARE + k;
-                    finder.find(i, &positions[k], reach(particles, i), found);
-                });
+                active
+                    .inactive
+                    .each_active(task * SHARE, positions.len(), |k| {
+                        let i = task * SHARE + k;
+                        finder.find(i, &positions[k], reach(particles, i), found);
+                    });
                 found.sort_unstable_by_key(|entry| (entry.peer, entry.particle));
             });
         let found = &self.found;

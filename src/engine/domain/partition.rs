@@ -69,7 +69,7 @@ impl Partition {
         Self::with(slabs, balance, case, outset)
     }
 
-    /// All particles on the first rank, until they are [dealt](Self::deal).
+    /// All particles on the first rank, until they are [distributed](Self::distribute).
     #[must_use]
     pub fn none(case: &Case, comm: &Comm, outset: &Outset) -> Self {
         let levels = outset.known_levels(case, comm.size()).unwrap_or(1);
@@ -133,8 +133,8 @@ impl Partition {
         [work, self.rank_speeds.load(work, comm.rank(), comm.size())]
     }
 
-    /// Hears of the work of all ranks in a step, and of the largest load.
-    pub fn hear(&mut self, comm: &Comm, [work, load]: [u64; 2]) {
+    /// Takes the work of all ranks in a step, and the largest load.
+    pub fn receive_work(&mut self, comm: &Comm, [work, load]: [u64; 2]) {
         if work > 0 {
             #[allow(clippy::cast_precision_loss, reason = "a ratio")]
             self.loss
@@ -147,7 +147,8 @@ impl Partition {
     pub fn balance(
         &mut self,
         comm: &Comm,
-        (particles, step): (&ParticleStore, u64),
+        particles: &ParticleStore,
+        step: u64,
         busy: f64,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
@@ -183,7 +184,7 @@ impl Partition {
         }
     }
 
-    /// [`Self::deal`], in slabs of the levels and axes that suit the particles. Collective.
+    /// [`Self::distribute`], in slabs of the levels and axes that suit the particles. Collective.
     pub fn begin(
         &mut self,
         comm: &Comm,
@@ -192,17 +193,17 @@ impl Partition {
     ) {
         self.cut(comm, particles);
         self.revise(comm, particles, reach);
-        self.hand_out(comm, particles);
+        self.send_all(comm, particles);
     }
 
-    /// Cuts slabs anew for any shares of all particles, and deals these to the ranks. Collective.
-    pub fn deal(&mut self, comm: &Comm, particles: &mut ParticleStore) {
+    /// Cuts slabs anew for any shares of all particles, and distributes these to the ranks. Collective.
+    pub fn distribute(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         self.cut(comm, particles);
-        self.hand_out(comm, particles);
+        self.send_all(comm, particles);
     }
 
-    /// Deals any shares of all particles to the ranks. Collective.
-    fn hand_out(&mut self, comm: &Comm, particles: &mut ParticleStore) {
+    /// Sends any shares of all particles to the ranks that own them. Collective.
+    fn send_all(&mut self, comm: &Comm, particles: &mut ParticleStore) {
         self.migration
             .migrate(comm, &self.slabs, particles, &[], |_, _| 0.0);
         // Its buffers have carried whole shares of the model; never again so much.

@@ -28,13 +28,13 @@ pub struct Member {
 /// from one search to the next.
 ///
 /// A search is [`Self::begin`], links between this rank's particles, halo particles and their images
-/// ([`Self::sets`]), [`Self::settle`].
+/// ([`Self::sets`]), [`Self::finish`].
 #[derive(Default)]
 pub struct Labels {
     members: Members,
     pub(super) merger: Merger,
     /// Labels of particles on their own rank.
-    told: Vec<u64>,
+    own_labels: Vec<u64>,
     collector: Collector,
 }
 
@@ -62,7 +62,7 @@ impl Labels {
         &self.members.sets
     }
 
-    /// Who hangs together with whom, after [`Self::settle`].
+    /// Who hangs together with whom, after [`Self::finish`].
     #[must_use]
     pub fn members(&self) -> &Members {
         &self.members
@@ -70,20 +70,24 @@ impl Labels {
 
     /// Labels what the links have joined, given the `ids` of this rank's particles and of halo
     /// particles after them. Without a halo there is one rank. Collective.
-    pub fn settle(&mut self, comm: &Comm, halo: Option<&mut Halo>, ids: &[u64], owned: usize) {
+    pub fn finish(&mut self, comm: &Comm, halo: Option<&mut Halo>, ids: &[u64], owned: usize) {
         let Members { sets, crossing } = &mut self.members;
-        sets.settle(ids, owned);
+        sets.finish(ids, owned);
         crossing.clear();
         let Some(halo) = halo.filter(|_| comm.size() > 1) else {
             return;
         };
         let place = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
         let known = &*sets;
-        self.told.resize(ids.len(), 0);
-        let told = self.told.par_iter_mut().enumerate().with_min_len(SHARE);
-        told.for_each(|(i, told)| *told = known.set(place(i)).label);
-        halo.exchange_values(comm, &mut self.told);
-        let (told, collector) = (&self.told, &mut self.collector);
+        self.own_labels.resize(ids.len(), 0);
+        let labels = self
+            .own_labels
+            .par_iter_mut()
+            .enumerate()
+            .with_min_len(SHARE);
+        labels.for_each(|(i, label)| *label = known.set(place(i)).label);
+        halo.exchange_values(comm, &mut self.own_labels);
+        let (own_labels, collector) = (&self.own_labels, &mut self.collector);
         // A root is the smallest of its set: halo particles that nothing here is linked with are by
         // themselves.
         let linked = |i: usize| Some(known.set(place(owned + i))).filter(|set| set.count > 0);
@@ -93,7 +97,7 @@ impl Labels {
         collector.extend(rows, halo, |i| {
             linked(i).map(|set| Row {
                 label: set.label,
-                other: told[owned + i],
+                other: own_labels[owned + i],
                 marks: 0,
                 count: 0,
             })
@@ -134,7 +138,7 @@ impl Labels {
     pub fn memory(&self) -> usize {
         self.members.sets.memory()
             + self.merger.memory()
-            + 8 * self.told.capacity()
+            + 8 * self.own_labels.capacity()
             + self.collector.memory()
             + size_of::<(u32, u64)>() * self.members.crossing.capacity()
     }

@@ -59,7 +59,7 @@ pub(super) fn link(
     }
     labels.begin(matter.ids.len());
     links.join(&bridges, labels.sets());
-    labels.settle(comm, halo, matter.ids, matter.owned);
+    labels.finish(comm, halo, matter.ids, matter.owned);
 }
 
 impl<'a> Links<'a> {

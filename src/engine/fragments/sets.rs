@@ -12,13 +12,13 @@ pub(super) const SHARE: usize = 4096;
 #[derive(Debug, Default)]
 pub struct Sets {
     parents: Vec<AtomicU32>,
-    /// At roots, after [`Self::settle`]: smallest id, marks, and elements that count.
+    /// At roots, after [`Self::finish`]: smallest id, marks, and elements that count.
     labels: Vec<AtomicU64>,
     marks: Vec<AtomicU32>,
     counts: Vec<AtomicU32>,
 }
 
-/// What [`Sets::settle`] has found of a set.
+/// What [`Sets::finish`] has found of a set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Set {
     /// Its smallest element.
@@ -109,7 +109,7 @@ impl Sets {
 
     /// Finds what [`Self::set`] tells, from the ids of all elements; the first `counted` of them
     /// count.
-    pub fn settle(&mut self, ids: &[u64], counted: usize) {
+    pub fn finish(&mut self, ids: &[u64], counted: usize) {
         let sets = &*self;
         let book = |run: &Set| {
             let root = run.root as usize;
@@ -142,7 +142,7 @@ impl Sets {
         });
     }
 
-    /// The set of an element, after [`Self::settle`].
+    /// The set of an element, after [`Self::finish`].
     #[must_use]
     pub fn set(&self, i: u32) -> Set {
         let root = self.root(i);
@@ -204,7 +204,7 @@ mod tests {
                 sets.mark(a, 1 << (a % 3));
             });
             let ids: Vec<u64> = (0..N).map(|i| u64::from(N - i)).collect();
-            sets.settle(&ids, 15_000);
+            sets.finish(&ids, 15_000);
             let mut counts = std::collections::BTreeMap::new();
             let mut least = std::collections::BTreeMap::new();
             let mut marks = std::collections::BTreeMap::new();

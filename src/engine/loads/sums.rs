@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::Loads;
 use numerics::exact_sum::ExactSum;
 use numerics::gathered_sums::{self, GatheredSums};
-use particles::{Asleep, Block, GRAIN, KeptBlocks, ParticleStore};
+use particles::{Active, Block, GRAIN, KeptBlocks, ParticleStore};
 
 impl Loads {
     /// Exact sums of `terms` of this rank's particles that are no part of a rigid body.
@@ -31,30 +31,33 @@ impl Loads {
         })
     }
 
-    /// As [`Self::sum_free`], with what is `kept` of particles that sleep, whose terms stay as they are.
+    /// As [`Self::sum_free`], with the `kept` sums of inactive particles, whose terms stay as they are.
     pub(crate) fn sum_kept<const N: usize>(
         &self,
-        particles: &ParticleStore,
-        (kept, asleep): (&mut KeptBlocks<[ExactSum; N]>, &Asleep),
+        active: Active,
+        kept: &mut KeptBlocks<[ExactSum; N]>,
         terms: impl Fn(usize) -> [f64; N] + Sync,
     ) -> [ExactSum; N] {
         let add = |places: Range<usize>, sums: &mut GatheredSums<N>| {
-            let free = places.filter(|&i| self.is_free(particles, i));
+            let free = places.filter(|&i| self.is_free(active.particles, i));
             free.for_each(|i| sums.add(&terms(i)));
         };
         let of_block = |mut sums: GatheredSums<N>, mut block: Block<'_, [ExactSum; N]>| {
-            let of_sleepers = |places| {
+            let of_inactive = |places| {
                 let mut sums = GatheredSums::default();
                 add(places, &mut sums);
                 Some(sums.into_sums())
             };
-            match block.kept(of_sleepers) {
+            match block.kept(of_inactive) {
                 Some(kept) => sums.merge_sums(kept),
                 None => add(block.places(), &mut sums),
             }
             sums
         };
-        all(kept.each(particles.owned(), asleep), of_block)
+        all(
+            kept.each(active.particles.owned(), active.inactive),
+            of_block,
+        )
     }
 
     /// Whether a particle is no part of a rigid body.

@@ -13,7 +13,7 @@ use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::gathered_sums::GatheredSums;
 use numerics::ordered::{disordered, ordered};
 use numerics::vector::{cross, norm};
-use particles::{Asleep, Block, GRAIN, KeptBlocks, ParticleStore};
+use particles::{Active, Block, GRAIN, KeptBlocks, ParticleStore};
 
 /// What there is of a body (SI), the images behind symmetry planes with it. What no particle has
 /// is not a number.
@@ -216,15 +216,16 @@ impl KeptBodies {
     }
 }
 
-/// The figures of each body, in the order of the case, with what is kept of those that sleep. Collective.
+/// The figures of each body, in the order of the case, with the `kept` ones of inactive particles. Collective.
 #[must_use]
 pub fn bodies(
     case: &Case,
-    particles: &ParticleStore,
-    (kept, asleep): (&mut KeptBodies, &Asleep),
+    active: Active,
+    kept: &mut KeptBodies,
     whole: Whole,
     comm: &Comm,
 ) -> Vec<BodyFigures> {
+    let particles = active.particles;
     let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
     // `parts` are those of bodies from the first one on.
     let add = |places: Range<usize>, parts: &mut [Part], first_body: usize| {
@@ -239,7 +240,7 @@ pub fn bodies(
             }
         }
     };
-    let of_sleepers = |places: Range<usize>| {
+    let of_inactive = |places: Range<usize>| {
         let of = &particles.body[places.clone()];
         let body = of
             .iter()
@@ -255,7 +256,7 @@ pub fn bodies(
         })
     };
     let of_block = |mut parts: Vec<Part>, mut block: Block<'_, Kept>| {
-        match block.kept(of_sleepers) {
+        match block.kept(of_inactive) {
             Some(kept) => parts[kept.body].take(&kept.sums, &kept.extremes),
             None => add(block.places(), &mut parts, 0),
         }
@@ -268,7 +269,7 @@ pub fn bodies(
         parts
     };
     let mut parts = (kept.0)
-        .each(particles.owned(), asleep)
+        .each(active.particles.owned(), active.inactive)
         // same bits in any order: exact sums are integers, and extremes are some value among all
         .fold(none, of_block)
         // same bits in any order, as above

@@ -7,7 +7,7 @@
 //! they have the same bits for any ranks and restarts.
 
 use super::Whole;
-use crate::diagnose::Passed;
+use crate::diagnose::{Passed, RunState};
 use comm::Comm;
 use model::{Case, Witness};
 use numerics::alone;
@@ -126,16 +126,23 @@ impl Witnesses {
         })
     }
 
-    /// Tells particles at the start of a case on which sides they are.
+    /// Marks particles at the start of a case by the sides that they are on.
     pub fn begin(&self, particles: &mut ParticleStore) {
+        if !self.any() {
+            return;
+        }
         // At the start, not in every step.
         for i in 0..particles.owned() {
             particles.witness_sides[i] = self.sides(&particles.position[i]);
         }
     }
 
-    /// Notes who has passed a plane in the step that ends at a time (s).
-    pub fn watch(&mut self, particles: &mut ParticleStore, (step, time, dt): (u64, f64, f64)) {
+    /// Notes the particles that have passed a plane in the last step of a state.
+    pub fn watch(&mut self, particles: &mut ParticleStore, state: &RunState) {
+        if !self.any() {
+            return;
+        }
+        let (step, time, dt) = (state.step, state.time, state.last_dt);
         let mut passing = std::mem::take(&mut self.passing);
         passing.clear();
         let mut collector = std::mem::take(&mut self.collector);

@@ -5,7 +5,7 @@
 use std::collections::VecDeque;
 use std::marker::PhantomData;
 
-use super::flight::{Flight, Sky};
+use super::flight::{Flight, FlightInputs};
 use crate::contact::ContactTable;
 use crate::diagnose::{Limits, Moved, NumericalFailure, PAST_STEPS, PastStep, Reason, RunState};
 use crate::domain::Span;
@@ -24,18 +24,19 @@ pub(super) const NO_CANDIDATE: Candidate = [u64::MAX, 0, 0];
 /// Reads as an error: no positive Δt has these bits.
 const ERROR: u64 = 0;
 
-/// The choice of steps, and what a run remembers of them.
+/// The choice of steps, and the last ones.
 pub struct StepControl {
-    /// What this rank asks for (a set of bits): all ranks' requests are joined with their candidates on
+    /// Requests of this rank, such as to stop (a set of bits). All ranks' requests are joined with their candidates for
     /// the next step.
     pub requests: u64,
     /// The joined requests of all ranks as of the last candidate.
     pub agreed_requests: u64,
+    /// Fill all fields that are not state with NaN between steps, and deactivate no particle: for tests.
+    pub poison: bool,
     pub(super) limits: Limits,
     flight: Flight,
-    /// Largest step (s).
-    longest: f64,
-    /// Who had the last candidate that was chosen.
+    options: TimeStepOptions,
+    /// Particle of the last candidate that was chosen.
     id: u64,
     /// The last candidates, for post-mortems.
     past: VecDeque<PastStep>,
@@ -47,21 +48,32 @@ impl StepControl {
         Self {
             requests: 0,
             agreed_requests: 0,
+            poison: false,
             limits: Limits::new(case, comm),
             flight: Flight::new(table),
-            longest: case.time_step.max,
+            options: case.time_step,
             id: 0,
             past: VecDeque::with_capacity(PAST_STEPS),
         }
     }
 
-    /// The next step (s) and its reason, given the first candidate of all ranks and what all particles
-    /// span; or who has failed numerically. Collective.
+    /// Inputs of the candidates of particles, under gravity (m/s²).
+    pub(super) fn criteria<'a>(&'a self, sph: &'a Sph, gravity: [f64; 3]) -> CriteriaInputs<'a> {
+        CriteriaInputs {
+            sph,
+            limits: &self.limits,
+            options: self.options,
+            gravity,
+        }
+    }
+
+    /// The next step (s) and its reason, given the first candidate of all ranks and the extent of all
+    /// particles; or the particle that has failed numerically. Collective.
     pub(super) fn choose(
         &mut self,
         comm: &Comm,
         [dt, reason, id]: Candidate,
-        sky: &Sky,
+        inputs: &FlightInputs,
         span: &Span,
     ) -> Result<(f64, Reason), (NumericalFailure, u64)> {
         if dt == ERROR {
@@ -75,17 +87,17 @@ impl StepControl {
         } else {
             f64::from_bits(dt)
         };
-        if self.longest < dt {
-            (dt, reason) = (self.longest, Reason::Maximum);
+        if self.options.max < dt {
+            (dt, reason) = (self.options.max, Reason::Maximum);
         }
-        let flight = self.flight.longest_step(comm, sky, span, dt);
+        let flight = self.flight.longest_step(comm, inputs, span, dt);
         if flight < dt {
             (dt, reason) = (flight, Reason::Flight);
         }
         Ok((dt, reason))
     }
 
-    /// Remembers the last candidate, of which the state knows the rest.
+    /// Remembers the last choice, whose step and reason stand in the state.
     pub(super) fn keep(&mut self, state: &RunState) {
         if self.past.len() == PAST_STEPS {
             self.past.pop_front();
@@ -113,13 +125,13 @@ fn kind_of(number: u64) -> NumericalFailure {
     NumericalFailure::ALL[usize::try_from(number).unwrap_or(0).min(last)]
 }
 
-/// The smallest candidate so far, and what tells without roots and divisions that a particle
-/// neither undercuts it nor has failed.
+/// The smallest candidate so far, and powers of it: by these a particle neither undercuts it nor has
+/// failed, without roots and divisions.
 pub(super) struct BestCandidate {
     best: Candidate,
     /// Steps beyond this one (s) do not matter, with room for rounding.
     step: f64,
-    /// Its square and its fourth power, infinite where they cannot tell.
+    /// Its square and its fourth power, infinite where they are too small to compare.
     step2: f64,
     step4: f64,
     /// Smoothing length (m) and signal speed (m/s) of a best candidate by sound: where all is at
@@ -136,8 +148,9 @@ impl BestCandidate {
         let step = dt.max(step_min) * (1.0 + 1e-9);
         let step2 = step * step;
         let step4 = step2 * step2;
-        let tells = step == 0.0 || step4 >= f64::MIN_POSITIVE;
-        let [step2, step4] = [step2, step4].map(|power| if tells { power } else { f64::INFINITY });
+        let compare = step == 0.0 || step4 >= f64::MIN_POSITIVE;
+        let [step2, step4] =
+            [step2, step4].map(|power| if compare { power } else { f64::INFINITY });
         Self {
             best,
             step,
@@ -179,7 +192,7 @@ pub(super) struct CriteriaFields<'a> {
     pub fit_norm: &'a [f64],
 }
 
-/// Borrows [`CriteriaFields`] of a fields.
+/// Borrows [`CriteriaFields`] of a store.
 macro_rules! criteria_fields {
     ($particles:expr) => {
         $crate::step::candidate::CriteriaFields {
@@ -200,11 +213,21 @@ macro_rules! criteria_fields {
 }
 pub(super) use criteria_fields;
 
-/// What a particle's candidate depends on, in the formulation `F`.
+/// Inputs of the candidates of particles, beside their fields.
+#[derive(Clone, Copy)]
+pub(super) struct CriteriaInputs<'a> {
+    sph: &'a Sph,
+    limits: &'a Limits,
+    options: TimeStepOptions,
+    /// Acceleration (m/s²).
+    gravity: [f64; 3],
+}
+
+/// The criteria that candidates follow from, in the formulation `F`.
 pub(super) struct Criteria<'a, F> {
     pub fields: CriteriaFields<'a>,
     signals: Signals<'a>,
-    factors: TimeStepOptions,
+    options: TimeStepOptions,
     contact: bool,
     gravity: [f64; 3],
     limits: &'a Limits,
@@ -212,25 +235,26 @@ pub(super) struct Criteria<'a, F> {
 }
 
 impl<'a, F: SignalSpeed> Criteria<'a, F> {
-    pub(super) fn new(
-        fields: CriteriaFields<'a>,
-        sph: &Sph,
-        limits: &'a Limits,
-        (factors, gravity): (TimeStepOptions, [f64; 3]),
-    ) -> Self {
+    pub(super) fn new(fields: CriteriaFields<'a>, inputs: CriteriaInputs<'a>) -> Self {
+        let CriteriaInputs {
+            sph,
+            limits,
+            options,
+            gravity,
+        } = inputs;
         let speeds = [fields.sound_speed, fields.approach_speed];
         Self {
             signals: sph.signals(speeds, [fields.correction_norm, fields.fit_norm]),
             contact: !fields.contact_stiffness.is_empty(),
             fields,
-            factors,
+            options,
             gravity,
             limits,
             formulation: PhantomData,
         }
     }
 
-    /// What is wrong with a particle, if anything is.
+    /// How a particle has failed numerically, if it has.
     pub(super) fn failure(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
         let [dt, kind, _] = self.candidate(i, moved);
         (dt == ERROR).then(|| kind_of(kind))
@@ -256,10 +280,10 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     }
 
     /// Whether a particle is sound and asks for more than the smallest step so far: the criteria of
-    /// [`Self::candidate`], multiplied out. What is NaN is beyond nothing.
+    /// [`Self::candidate`], multiplied out. NaN is beyond nothing.
     #[inline(always)]
     fn is_beyond(&self, i: usize, moved: &Moved, best: &BestCandidate) -> bool {
-        let (fields, factors) = (&self.fields, &self.factors);
+        let (fields, factors) = (&self.fields, &self.options);
         let (h, signal) = (fields.smoothing_length[i], self.signals.of::<F>(i));
         let by_sound = (signal >= 0.0 && factors.courant * h > best.step * signal)
             || (best.is_matched(h, signal) && fields.id[i] > best.best[2]);
@@ -288,7 +312,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     #[cold]
     #[inline(never)]
     fn candidate(&self, i: usize, moved: &Moved) -> Candidate {
-        let (fields, factors) = (&self.fields, &self.factors);
+        let (fields, factors) = (&self.fields, &self.options);
         let h = fields.smoothing_length[i];
         let sound = factors.courant * h / self.signals.of::<F>(i);
         let square = square(&self.acceleration(i, &moved.contact));

@@ -25,7 +25,7 @@ pub enum SetupError {
     /// The lattices need more identities than there are.
     #[error("the bodies' lattices have too many sites to number; use larger spacings")]
     TooManySites,
-    /// A particle begins with what nature does not know.
+    /// A particle begins with values out of range.
     #[error("{0}")]
     Unsound(String),
     /// A restored state is not one of the case.
@@ -69,7 +69,9 @@ pub(super) fn failure(
     comm: &Comm,
     case: &Case,
     particles: &ParticleStore,
-    (step, kind, id): (u64, NumericalFailure, u64),
+    step: u64,
+    kind: NumericalFailure,
+    id: u64,
 ) -> StepError {
     let found = particles.id[..particles.owned()]
         .iter()

@@ -44,7 +44,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     Owner::all().difference(used)
 }
 
-/// What particles keep because snapshots or gauges are to show it.
+/// Fields that particles have because snapshots or gauges are to show them.
 fn records(case: &Case) -> Owner {
     let gauges = case.measure.gauges.iter().flat_map(|gauge| &gauge.fields);
     let names: Vec<&String> = case.output.all_fields().chain(gauges).collect();
@@ -61,7 +61,7 @@ pub fn store_of(case: &Case) -> ParticleStore {
 }
 
 /// Bytes of a halo particle in each message of a step between two ranks: its motion, with the codes of
-/// its images; what it shows to forces; its friction, if there is any.
+/// its images; its fields for the forces; its friction, if there is any.
 #[must_use]
 pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
     let (contact, store) = (ContactTable::new(case), store_of(case));

@@ -1,9 +1,9 @@
 //! How far bodies may fly in a step without passing through each other unseen, see the page on time
 //! integration.
 //!
-//! The velocities of all particles together, which ride along with the sums of each step, tell for
-//! nearly all steps that nothing can. Else bodies are looked at by pairs, then those of their
-//! particles that can meet; and the particles near rigid surfaces.
+//! In nearly all steps the extents of all places and velocities, which are joined with the sums of each
+//! step, show that nothing can. Else pairs of bodies are examined, then those of their particles that can
+//! meet, and particles near rigid surfaces.
 
 use rayon::prelude::*;
 
@@ -16,10 +16,10 @@ use numerics::vector::norm;
 use particles::Mirrors;
 use particles::ParticleStore;
 
-/// How often those that can meet are looked for among those that could before.
+/// Rounds in which particles that can meet are sought among those that could before.
 const ROUNDS: usize = 4;
 
-/// What the search for a longest step works with, kept from one to the next.
+/// The search for a longest step, with memory kept from one to the next.
 #[derive(Debug, Default)]
 pub(super) struct Flight {
     /// Shortest mean smoothing length of two bodies with contact (m), infinite without.
@@ -29,9 +29,9 @@ pub(super) struct Flight {
     prescribed: Vec<[Option<[f64; 2]>; 3]>,
 }
 
-/// Whatever is about particles that fly.
+/// Particles that fly, and everything that they may fly through.
 #[derive(Clone, Copy)]
-pub(super) struct Sky<'a> {
+pub(super) struct FlightInputs<'a> {
     pub case: &'a Case,
     pub particles: &'a ParticleStore,
     pub table: &'a ContactTable,
@@ -52,7 +52,7 @@ struct Search {
     words: Vec<u64>,
 }
 
-/// Two bodies, the second one's image behind planes, and what of them can meet.
+/// Two bodies, of the second one an image behind planes, and the extents of their particles that can meet.
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     bodies: [usize; 2],
@@ -91,16 +91,22 @@ impl Flight {
     }
 
     /// The longest step, of no more than `dt` (s), in which nothing flies through anything else
-    /// unseen, given what all particles span. Collective.
-    pub fn longest_step(&mut self, comm: &Comm, sky: &Sky, span: &Span, dt: f64) -> f64 {
+    /// unseen, given the extent of all particles. Collective.
+    pub fn longest_step(
+        &mut self,
+        comm: &Comm,
+        inputs: &FlightInputs,
+        span: &Span,
+        dt: f64,
+    ) -> f64 {
         let mut all = *span;
-        let from = sky.time;
-        let to = sky.case.run.end_time.min(from + dt);
-        if all.is_empty() || !sky.table.is_active() || to.is_infinite() {
+        let from = inputs.time;
+        let to = inputs.case.run.end_time.min(from + dt);
+        if all.is_empty() || !inputs.table.is_active() || to.is_infinite() {
             return dt;
         }
         self.prescribed.clear();
-        self.prescribed.extend(prescribed(sky.case, from, to));
+        self.prescribed.extend(prescribed(inputs.case, from, to));
         for ranges in &self.prescribed {
             for (a, range) in ranges.iter().enumerate() {
                 if let Some(range) = *range {
@@ -109,29 +115,34 @@ impl Flight {
             }
         }
         let mut images = all;
-        for code in sky.mirrors.codes() {
-            images.join(&all.reflected(sky.mirrors, code));
+        for code in inputs.mirrors.codes() {
+            images.join(&all.reflected(inputs.mirrors, code));
         }
         let flyers = Flyers {
-            particles: sky.particles,
+            particles: inputs.particles,
             prescribed: &self.prescribed,
         };
         let mut longest = dt;
         if norm(&images.against(&images.velocities())) * dt > self.shortest {
-            longest = self.search.of_bodies(comm, sky, &flyers, dt);
+            longest = self.search.of_bodies(comm, inputs, &flyers, dt);
         }
         let near = |surface: &RigidSurface, placed: &Placed| {
             let speed = placed.closing_speed(&all, from, to);
-            let bodies = sky.case.bodies.iter().zip(&surface.bodies);
+            let bodies = inputs.case.bodies.iter().zip(&surface.bodies);
             let h = bodies
                 .filter(|(_, acts)| **acts)
                 .map(|(body, _)| body.smoothing_length);
             2.0 * speed * dt > h.fold(f64::INFINITY, f64::min)
         };
-        let surfaces = sky.case.loads.surfaces.iter().zip(&sky.loads.surfaces);
+        let surfaces = inputs
+            .case
+            .loads
+            .surfaces
+            .iter()
+            .zip(&inputs.loads.surfaces);
         let mut placed = surfaces.map(|(surface, step)| Placed { surface, step });
         if placed.any(|placed| near(placed.surface, &placed)) {
-            longest = comm.min_f64(to_surfaces(sky, &flyers, longest));
+            longest = comm.min_f64(to_surfaces(inputs, &flyers, longest));
         }
         longest
     }
@@ -201,9 +212,9 @@ impl Search {
 
     /// The longest step, of no more than `dt` (s), of bodies that fly towards each other.
     /// Collective.
-    fn of_bodies(&mut self, comm: &Comm, sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
-        let (particles, bodies) = (sky.particles, sky.case.bodies.len());
-        let mirrors = sky.mirrors;
+    fn of_bodies(&mut self, comm: &Comm, inputs: &FlightInputs, flyers: &Flyers, dt: f64) -> f64 {
+        let (particles, bodies) = (inputs.particles, inputs.case.bodies.len());
+        let mirrors = inputs.mirrors;
         self.join(comm, bodies, particles.owned(), |i, spans, _, _| {
             // Stress points meet nothing.
             if particles.mass[i] > 0.0 {
@@ -211,7 +222,7 @@ impl Search {
             }
         });
         self.sides.resize_with(bodies, Vec::new);
-        self.pair(sky, dt);
+        self.pair(inputs, dt);
         let mut longest = self.sift(mirrors, dt);
         for _ in 0..ROUNDS {
             if self.meetings.is_empty() {
@@ -248,14 +259,14 @@ impl Search {
         longest
     }
 
-    /// Lists the bodies that limit a step `dt` (s), given what each of them spans.
-    fn pair(&mut self, sky: &Sky, dt: f64) {
-        let (mirrors, bodies) = (sky.mirrors, sky.case.bodies.len());
+    /// Lists the bodies that limit a step `dt` (s), given the extent of each of them.
+    fn pair(&mut self, inputs: &FlightInputs, dt: f64) {
+        let (mirrors, bodies) = (inputs.mirrors, inputs.case.bodies.len());
         let (spans, meetings) = (&self.parts[0], &mut self.meetings);
         meetings.clear();
         for a in 0..bodies {
             for b in a + 1..bodies {
-                let Some(pair) = sky.table.between(a, b) else {
+                let Some(pair) = inputs.table.between(a, b) else {
                     continue;
                 };
                 let meet = |code| Meeting {
@@ -271,7 +282,7 @@ impl Search {
     }
 }
 
-/// What tells the velocities of a particle in the next step.
+/// Velocities of particles in the next step.
 struct Flyers<'a> {
     particles: &'a ParticleStore,
     prescribed: &'a [[Option<[f64; 2]>; 3]],
@@ -307,10 +318,10 @@ fn prescribed(case: &Case, from: f64, to: f64) -> impl Iterator<Item = [Option<[
 
 /// The longest step, of no more than `dt` (s), of this rank's particles that fly towards rigid
 /// surfaces.
-fn to_surfaces(sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
-    let (from, to) = (sky.time, sky.time + dt);
-    let (particles, case) = (sky.particles, sky.case);
-    let surfaces = case.loads.surfaces.iter().zip(&sky.loads.surfaces);
+fn to_surfaces(inputs: &FlightInputs, flyers: &Flyers, dt: f64) -> f64 {
+    let (from, to) = (inputs.time, inputs.time + dt);
+    let (particles, case) = (inputs.particles, inputs.case);
+    let surfaces = case.loads.surfaces.iter().zip(&inputs.loads.surfaces);
     surfaces.fold(dt, |longest, (surface, step)| {
         let placed = Placed { surface, step };
         let step = |i: usize| {
@@ -322,7 +333,7 @@ fn to_surfaces(sky: &Sky, flyers: &Flyers, dt: f64) -> f64 {
             let (x, point) = (&particles.position[i], flyers.point(i));
             let speed = placed.closing_speed(&point, from, to);
             let local = placed.local(x);
-            // What is nearer than h has been seen.
+            // Contact sees particles nearer than h.
             match surface.foot(&local, 0.5 * h + speed * longest) {
                 Some(foot) if foot.gap >= h => (foot.gap - 0.5 * h) / speed,
                 _ => longest,

@@ -12,14 +12,14 @@
 
 use rayon::prelude::*;
 
-use super::candidate::{BestCandidate, Candidate, Criteria, criteria_fields};
+use super::candidate::{BestCandidate, Candidate, Criteria, CriteriaInputs, criteria_fields};
 use crate::diagnose::Moved;
 use crate::domain::Span;
 use crate::loads::{Free, Goal, Loads, Prescribe};
 use crate::sph::{SignalSpeed, Smoothing};
 use numerics::exact_sum::ExactSum;
 use numerics::vector::dot;
-use particles::{Asleep, GRAIN, ParticleStore};
+use particles::{ActiveMut, GRAIN, Inactive};
 
 fn add(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k] + b[k])
@@ -45,8 +45,8 @@ impl Kick {
     }
 }
 
-/// Calls `$work` with what tells the acceleration by contact (m/s²) and the loads of a particle: a
-/// type of its own where there are none.
+/// Calls `$work` with a function of a particle: its acceleration by contact (m/s²) and its loads, which
+/// have a type of their own where there are none.
 macro_rules! with_outside {
     ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
         let (contact, bits) = (&$particles.contact_acceleration, &$particles.load);
@@ -75,7 +75,7 @@ macro_rules! with_outside {
     }};
 }
 
-/// What the first half kick and the drift write.
+/// Fields that the first half kick and the drift write.
 struct Drifting<'a> {
     velocity: &'a mut [[f64; 3]],
     specific_energy: &'a mut [f64],
@@ -85,7 +85,7 @@ struct Drifting<'a> {
     smoothing_length: &'a mut [f64],
 }
 
-/// What they read.
+/// Fields that they read.
 struct Rates<'a> {
     mass: &'a [f64],
     density: &'a [f64],
@@ -95,14 +95,18 @@ struct Rates<'a> {
     velocity_gradient: &'a [[f64; 9]],
 }
 
-/// First half kick and drift of a step `dt` (s), and the predictions for its end, of what is awake. Gives the
-/// work of contact (J).
+/// First half kick and drift of a step `dt` (s), and the predictions for its end, of active particles. Returns
+/// the work of contact (J).
 pub(super) fn kick_and_drift(
-    (particles, asleep): (&mut ParticleStore, &Asleep),
+    active: ActiveMut,
     loads: &Loads,
     smoothing: &Smoothing,
     dt: f64,
 ) -> ExactSum {
+    let ActiveMut {
+        particles,
+        inactive,
+    } = active;
     let kick = Kick {
         dt,
         gravity: loads.gravity,
@@ -124,7 +128,7 @@ pub(super) fn kick_and_drift(
         velocity_gradient: &particles.velocity_gradient,
     };
     with_outside!(loads, particles, outside => {
-        drifting.advance(kick, (&rates, asleep), smoothing, outside)
+        drifting.advance(kick, &rates, inactive, smoothing, outside)
     })
 }
 
@@ -132,7 +136,8 @@ impl Drifting<'_> {
     fn advance<D: Prescribe>(
         self,
         kick: Kick,
-        (rates, asleep): (&Rates, &Asleep),
+        rates: &Rates,
+        inactive: &Inactive,
         smoothing: &Smoothing,
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> ExactSum {
@@ -153,7 +158,7 @@ impl Drifting<'_> {
             .fold(
                 ExactSum::default,
                 |mut work, (chunk, (v, e, x, v_p, rho_p, h))| {
-                    asleep.each_awake(chunk * GRAIN, v.len(), |k| {
+                    inactive.each_active(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &rates.acceleration[i];
@@ -184,29 +189,33 @@ impl Drifting<'_> {
     }
 }
 
-/// What the second half kick gives.
+/// Results of the second half kick.
 pub(super) struct Kicked {
     /// Work of contact (J).
     pub work: ExactSum,
     /// This rank's candidate for the next step, taken while each particle is at hand.
     pub candidate: Candidate,
-    /// Where particles are and how they move.
+    /// Extent of the places and velocities of particles.
     pub span: Span,
 }
 
-/// Second half kick of a step `dt` (s), zero at the start of a case, of what is awake. What `criteria` makes of
-/// the fields of candidates asks particles for candidates.
-pub(super) fn kick<'a, F: SignalSpeed>(
-    (particles, asleep): (&'a mut ParticleStore, &Asleep),
+/// Second half kick of a step `dt` (s), zero at the start of a case, of active particles, with their candidates for
+/// the next step in the formulation `F`.
+pub(super) fn kick<F: SignalSpeed>(
+    active: ActiveMut,
     loads: &Loads,
-    criteria: impl FnOnce(super::candidate::CriteriaFields<'a>) -> Criteria<'a, F>,
+    criteria: CriteriaInputs,
     dt: f64,
 ) -> Kicked {
+    let ActiveMut {
+        particles,
+        inactive,
+    } = active;
     let kick = Kick {
         dt,
         gravity: loads.gravity,
     };
-    let criteria = criteria(criteria_fields!(particles));
+    let criteria = Criteria::<F>::new(criteria_fields!(particles), criteria);
     let predicted_velocity = &particles.predicted_velocity;
     let kicking = Kicking {
         velocity: &mut particles.velocity,
@@ -214,11 +223,11 @@ pub(super) fn kick<'a, F: SignalSpeed>(
         heating: &mut particles.d_specific_energy_dt,
     };
     with_outside!(loads, particles, outside => {
-        kicking.finish(kick, (&criteria, asleep), predicted_velocity, outside)
+        kicking.finish(kick, &criteria, inactive, predicted_velocity, outside)
     })
 }
 
-/// What the second half kick writes.
+/// Fields that the second half kick writes.
 struct Kicking<'a> {
     velocity: &'a mut [[f64; 3]],
     specific_energy: &'a mut [f64],
@@ -229,7 +238,8 @@ impl Kicking<'_> {
     fn finish<D: Prescribe, F: SignalSpeed>(
         self,
         kick: Kick,
-        (criteria, asleep): (&Criteria<F>, &Asleep),
+        criteria: &Criteria<F>,
+        inactive: &Inactive,
         predicted_velocity: &[[f64; 3]],
         outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
     ) -> Kicked {
@@ -249,7 +259,7 @@ impl Kicking<'_> {
             .fold(
                 none,
                 |(mut work, mut best, mut span), (chunk, (v, e, de))| {
-                    asleep.each_awake(chunk * GRAIN, v.len(), |k| {
+                    inactive.each_active(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &fields.acceleration[i];

@@ -1,7 +1,7 @@
-//! Who hangs together in what sleeps: lists of all are not needed to tell parts of bodies.
+//! Links between inactive particles, so that labels of the pieces of bodies need no lists of all particles.
 //!
-//! As long as a part of the store sleeps, all that is within the support of its particles rests. So its links stay as
-//! they were when it fell asleep, and lists told them.
+//! As long as a part of the store is inactive, everything within the support of its particles rests. So its links stay as
+//! they were in the lists of the step that deactivated it.
 
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -18,7 +18,7 @@ use particles::{GRAIN, PART};
 pub(super) struct KeptLinks {
     /// By part: for each of its particles the first one that links within the part connect it with.
     firsts: Vec<[u8; PART]>,
-    /// By part: whether it has links with what is not kept.
+    /// By part: whether it has links with parts that are not kept.
     borders: Vec<AtomicBool>,
     /// Links between such first ones, and with images behind symmetry planes.
     links: Vec<Link>,
@@ -26,10 +26,10 @@ pub(super) struct KeptLinks {
     collector: Collector,
 }
 
-/// Two particles, and of which image the second one is.
+/// Two particles, and the code of the image of the second one.
 type Link = [u32; 3];
 
-/// What becomes of a part.
+/// Whether links of a part are kept.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Keeping {
     /// Its links are not kept.
@@ -42,7 +42,7 @@ pub(super) enum Keeping {
 }
 
 impl Keeping {
-    /// No keeping but where `is_so`.
+    /// This where `is_so`, else [`Self::No`].
     pub fn only_if(self, is_so: bool) -> Self {
         if is_so { self } else { Self::No }
     }
@@ -68,12 +68,12 @@ impl KeptLinks {
         std::mem::swap(&mut self.links, &mut self.spare);
     }
 
-    /// Whether a part that is kept has links with what is not.
+    /// Whether a part that is kept has links with parts that are not.
     pub fn is_border(&self, part: usize) -> bool {
         self.borders[part].load(Relaxed)
     }
 
-    /// Joins what the links of the parts connect that are `kept`.
+    /// Joins the particles that links of the `kept` parts connect.
     pub fn join(&self, kept: impl Fn(usize) -> bool + Sync, sets: &Sets) {
         let firsts = self.firsts.par_iter().enumerate();
         firsts
@@ -90,8 +90,8 @@ impl KeptLinks {
         });
     }
 
-    /// Takes up the links of parts whose particles all have lists: of those that are new to it, and whether there are any
-    /// beyond what is kept. `sets` is room to work in, every particle by itself.
+    /// Takes up the links of new parts, whose particles all have lists, and finds which parts have links with parts that
+    /// are not kept. `sets` is memory to work in, every particle by itself.
     pub fn note(&mut self, lists: &Lists, keeping: impl Fn(usize) -> Keeping + Sync, sets: &Sets) {
         let parts = sets.len() / PART;
         self.firsts.resize(parts, [0; PART]);
@@ -143,7 +143,7 @@ fn place(part: usize, k: usize) -> u32 {
     (PART * part + k) as u32
 }
 
-/// What lists tell of parts.
+/// The lists, and the parts whose links they give.
 struct Seen<'a, F> {
     lists: &'a Lists,
     keeping: F,
@@ -151,7 +151,7 @@ struct Seen<'a, F> {
 }
 
 impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
-    /// What becomes of the part of a particle.
+    /// Whether links of the part of a particle are kept.
     fn of(&self, i: usize) -> Keeping {
         let part = i / PART;
         if part < self.parts {
@@ -161,7 +161,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         }
     }
 
-    /// Takes all parts with lists for no borders.
+    /// Unmarks all parts with lists as borders.
     fn clear(&self, borders: &[AtomicBool]) {
         let images = self.lists.images();
         self.lists.chunks().par_iter().for_each(|chunk| {
@@ -175,7 +175,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         });
     }
 
-    /// Joins what is linked within a part that is new, and finds who has links beyond what is kept.
+    /// Joins particles that are linked within a new part, and marks parts with links to parts that are not kept.
     fn look(&self, sets: &Sets, borders: &[AtomicBool]) {
         let (images, lists) = (self.lists.images(), self.lists);
         lists.chunks().par_iter().for_each(|chunk| {
@@ -212,7 +212,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         });
     }
 
-    /// Links of a chunk with other parts that are kept, one of which is new, and with images; some more than once.
+    /// Links of a chunk between two kept parts, one of them new, and with images; some more than once.
     fn links<'a>(
         &'a self,
         chunk: &'a Chunk,
@@ -252,8 +252,8 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                     };
                     let last = &mut recent[slot(&link)];
                     let is_near = |lane: usize| {
-                        let is_meant = lanes >> lane & 1 == 1;
-                        is_meant
+                        let is_receiver = lanes >> lane & 1 == 1;
+                        is_receiver
                             && self
                                 .lists
                                 .in_support(cluster.group, cluster.receivers[lane], j)
@@ -270,20 +270,20 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
     }
 }
 
-/// The receivers of a cluster that are kept: those of a part that hang together are told of once.
+/// The receivers of a cluster that are kept. Those of a part that hang together stand there once.
 #[derive(Default)]
 struct Receivers {
     of: Option<[u32; LANES]>,
-    /// The first one of their part that they hang together with, what becomes of that, and a bit for each lane.
+    /// The first one of their part that they hang together with, whether its links are kept, and a bit for each lane.
     kept: [(u32, Keeping, u32); LANES],
     count: usize,
 }
 
 impl Receivers {
-    fn take(&mut self, cluster: &Cluster, told: impl Fn(u32) -> Option<(u32, Keeping)>) {
+    fn take(&mut self, cluster: &Cluster, first_of: impl Fn(u32) -> Option<(u32, Keeping)>) {
         (self.of, self.count) = (Some(cluster.receivers), 0);
         for (lane, &i) in cluster.valid().iter().enumerate() {
-            let Some((first, keeping)) = told(i) else {
+            let Some((first, keeping)) = first_of(i) else {
                 continue;
             };
             let mut known = self.kept[..self.count].iter_mut();
@@ -301,7 +301,7 @@ impl Receivers {
     }
 }
 
-/// Links that are looked up before they are told again.
+/// Links remembered so that few are found twice.
 const RECENT: usize = 256;
 
 fn slot(&[a, b, code]: &Link) -> usize {

@@ -1,25 +1,26 @@
 //! The loop, the integrator and the time-step candidates.
 
-mod busy;
+mod accounts;
+mod activity;
 mod candidate;
-mod dormant;
+pub mod contact_stress;
 mod error;
+pub mod failure;
 mod fields;
+mod file_values;
 mod flight;
-mod fragments;
-mod given;
+pub mod fragments;
 mod integrate;
 mod kept_links;
-mod measures;
+pub mod measurements;
+mod moving_cells;
 mod removal;
 mod restored;
 mod search;
 mod setup;
-mod shown;
 mod simulation;
-mod taking_out;
+mod space;
 mod timers;
-mod told;
 
 pub use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
@@ -27,8 +28,9 @@ pub use crate::diagnose::{
     Removed, RunState, Totals, Worst,
 };
 pub use candidate::StepControl;
+pub use contact_stress::Carried;
 pub use error::{SetupError, StepError};
 pub use fields::{bytes_of_messages, bytes_of_options, store_of};
-pub use shown::Carried;
+pub use search::Search;
 pub use simulation::Simulation;
 pub use timers::{Phase, Timers};

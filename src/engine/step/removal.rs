@@ -1,44 +1,187 @@
-//! Particles that are out of range, or have left the box of interest, are taken out of a run with all
-//! that they carry booked, and frozen ones are out of all sums like removed ones, kept for the files.
+//! Particles whose state is out of range, or that have left the box of interest, are taken out of a run, and
+//! everything that they carry is booked. Frozen ones are out of all sums like removed ones, and kept for the files.
 //!
 //! Were a particle to stay in the sums at rest, it would push others without being pushed: momentum
 //! and energy would be lost in each step, and its state, which is out of range, would go on to act.
-//! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and what
-//! it carried is booked in the same way. What is left of it in files is where it was and of what,
-//! the fields that are [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
+//! So it takes part in nothing, the rest of the run is that of a removal to the last bit, and its
+//! momentum and energy are booked in the same way. Files have of it the place and the material, the fields that are
+//! [`FieldInfo::kept`]. All else of it, velocity and stress among it, is zero.
 
-use super::candidate::Criteria;
+use super::candidate::{Criteria, CriteriaInputs, criteria_fields};
+use super::error::StepError;
 use crate::diagnose::{Leave, Moved, Removed, RunState};
 use crate::loads::Loads;
-use crate::sph::SignalSpeed;
+use crate::sph::{SignalSpeed, with_formulation};
 use comm::Comm;
-use model::Region;
+use model::{Region, SphForm};
 use numerics::collector::Collector;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::vector::cross;
 use particles::{FieldInfo, GRAIN, Owner, ParticleStore};
 
-/// Particles that this rank has frozen: they are in files, and in nothing else.
-#[derive(Debug, Default)]
-pub(super) struct Frozen(ParticleStore);
+/// Steps between two searches for particles that have left the box of interest. They fly some spacings meanwhile, ten in
+/// the fastest impacts, and the new sums after a removal take as long as a step.
+const EVERY: u64 = 20;
 
-impl Frozen {
-    /// None, in a store like that of a case.
-    pub(super) fn like(particles: &ParticleStore) -> Self {
-        Self(particles.clone())
+/// Particles that are taken out of a run, and those that are frozen.
+#[derive(Debug)]
+pub(super) struct Removal {
+    frozen: Frozen,
+    /// Owned particles that are chosen to be taken out.
+    leaving: Vec<u32>,
+    collector: Collector,
+}
+
+/// The particles and the ledgers that a removal changes.
+pub(super) struct RemovalInputs<'a> {
+    pub particles: &'a mut ParticleStore,
+    pub state: &'a mut RunState,
+    pub loads: &'a Loads,
+    /// Number of bodies.
+    pub bodies: usize,
+}
+
+impl Leave {
+    /// Why nothing is left, in words.
+    fn of_all(self) -> &'static str {
+        match self {
+            Self::Failed => "all were out of range",
+            Self::Departed => "the last ones have left the box of interest (domain.keep)",
+        }
+    }
+}
+
+impl Removal {
+    /// Of no particles, with frozen ones in a store like that of a case.
+    pub(super) fn new(particles: &ParticleStore) -> Self {
+        Self {
+            frozen: Frozen(particles.clone()),
+            leaving: Vec::new(),
+            collector: Collector::default(),
+        }
     }
 
-    /// How many there are.
-    pub(super) fn count(&self) -> usize {
+    /// Bytes allocated.
+    pub(super) fn memory(&self) -> usize {
+        self.frozen.0.memory() + 4 * self.leaving.capacity() + self.collector.memory()
+    }
+
+    /// Number of frozen particles.
+    pub(super) fn frozen(&self) -> usize {
+        self.frozen.count()
+    }
+
+    /// Separates frozen particles from those that a checkpoint holds with them, whatever becomes of the next ones;
+    /// gives up the fields `unused` and sizes all others. Collective.
+    pub(super) fn restore(&mut self, comm: &Comm, particles: &mut ParticleStore, unused: Owner) {
+        self.frozen = Frozen::separate(comm, particles, unused);
+    }
+
+    /// Appends frozen particles to owned ones, in place of the halo.
+    pub(super) fn append_frozen(&self, particles: &mut ParticleStore) {
+        if self.frozen() > 0 {
+            particles.append(&self.frozen.0);
+        }
+    }
+
+    /// Takes back those that [`Self::append_frozen`] has appended.
+    pub(super) fn drop_frozen(&self, particles: &mut ParticleStore) {
+        if self.frozen() > 0 {
+            particles.resize_owned(particles.owned() - self.frozen());
+        }
+    }
+
+    /// Chooses the owned particles whose state is out of range.
+    pub(super) fn choose_failed(
+        &mut self,
+        particles: &ParticleStore,
+        loads: &Loads,
+        form: SphForm,
+        criteria: CriteriaInputs,
+    ) {
+        self.leaving = with_formulation!(form, Form => {
+            let criteria = Criteria::<Form>::new(criteria_fields!(particles), criteria);
+            failed(particles, loads, &criteria)
+        });
+    }
+
+    /// Keeps the chosen particles for the files.
+    pub(super) fn freeze(&mut self, particles: &ParticleStore) {
+        self.frozen.freeze(particles, &self.leaving);
+    }
+
+    /// At every few steps chooses the owned particles that have left a region. Particles of rigid bodies stay wherever
+    /// they go. Returns whether any rank has chosen some. Collective.
+    pub(super) fn choose_departed(
+        &mut self,
+        comm: &Comm,
+        particles: &ParticleStore,
+        loads: &Loads,
+        keep: &Region,
+        step: u64,
+    ) -> bool {
+        if !step.is_multiple_of(EVERY) {
+            return false;
+        }
+        let goes = |i: &usize| {
+            let bits = particles.load.get(*i);
+            keep.is_left_by(&particles.position[*i])
+                && !bits.is_some_and(|&bits| loads.is_rigid(bits))
+        };
+        self.leaving.clear();
+        let all = (particles.owned(), GRAIN);
+        self.collector.extend(&mut self.leaving, all, |i| {
+            Some(i)
+                .filter(goes)
+                .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
+        });
+        comm.any(!self.leaving.is_empty())
+    }
+
+    /// The chosen particles.
+    pub(super) fn leaving(&self) -> &[u32] {
+        &self.leaving
+    }
+
+    /// Takes the chosen particles out of the store and books them. Returns their number on all ranks. Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks if no particle is left.
+    pub(super) fn take_out(
+        &mut self,
+        comm: &Comm,
+        why: Leave,
+        mut inputs: RemovalInputs,
+    ) -> Result<u64, StepError> {
+        let mut count = [self.leaving.len() as u64, inputs.particles.owned() as u64];
+        book(comm, why, &mut inputs, &self.leaving);
+        let RemovalInputs {
+            particles, state, ..
+        } = inputs;
+        particles.remove(&mut self.leaving, &mut Vec::new());
+        comm.sum_u64(&mut count);
+        if count[0] == count[1] {
+            return Err(StepError::NothingLeft {
+                step: state.step,
+                why: why.of_all(),
+            });
+        }
+        Ok(count[0])
+    }
+}
+
+/// Particles that this rank has frozen: they are in files, and in nothing else.
+#[derive(Debug, Default)]
+struct Frozen(ParticleStore);
+
+impl Frozen {
+    /// Number of them.
+    fn count(&self) -> usize {
         self.0.owned()
     }
 
-    pub(super) fn memory(&self) -> usize {
-        self.0.memory()
-    }
-
     /// Keeps the owned particles `indices` for the files.
-    pub(super) fn freeze(&mut self, particles: &ParticleStore, indices: &[u32]) {
+    fn freeze(&mut self, particles: &ParticleStore, indices: &[u32]) {
         let mut remains = Vec::new();
         particles.pack(FieldInfo::is_kept, indices, &mut remains);
         let (frozen, count) = (&mut self.0, indices.len());
@@ -50,9 +193,8 @@ impl Frozen {
         }
     }
 
-    /// Parts frozen particles from those that a checkpoint holds with them, whatever becomes of the
-    /// next ones, gives up the fields `unused` and sizes all others. Collective.
-    pub(super) fn part(comm: &Comm, particles: &mut ParticleStore, unused: Owner) -> Self {
+    /// See [`Removal::restore`].
+    fn separate(comm: &Comm, particles: &mut ParticleStore, unused: Owner) -> Self {
         let marks = (0_u32..).zip(&particles.frozen);
         let mut leaving: Vec<u32> = marks
             .filter(|&(_, &frozen)| frozen != 0)
@@ -68,24 +210,10 @@ impl Frozen {
         particles.remove(&mut leaving, &mut Vec::new());
         frozen
     }
-
-    /// Appends them to owned particles, in place of the halo.
-    pub(super) fn append_to(&self, particles: &mut ParticleStore) {
-        if self.count() > 0 {
-            particles.append(&self.0);
-        }
-    }
-
-    /// Takes back what [`Self::append_to`] appended.
-    pub(super) fn take_from(&self, particles: &mut ParticleStore) {
-        if self.count() > 0 {
-            particles.resize_owned(particles.owned() - self.count());
-        }
-    }
 }
 
 /// Owned particles whose state is out of range.
-pub(super) fn failed<F: SignalSpeed>(
+fn failed<F: SignalSpeed>(
     particles: &ParticleStore,
     loads: &Loads,
     criteria: &Criteria<F>,
@@ -109,27 +237,7 @@ pub(super) fn failed<F: SignalSpeed>(
         .collect()
 }
 
-/// Puts the owned particles that have left a region into `leaving`; what is part of a rigid body stays
-/// wherever it goes.
-pub(super) fn find_departed(
-    particles: &ParticleStore,
-    loads: &Loads,
-    keep: &Region,
-    (leaving, collector): (&mut Vec<u32>, &mut Collector),
-) {
-    let goes = |i: &usize| {
-        let bits = particles.load.get(*i);
-        keep.is_left_by(&particles.position[*i]) && !bits.is_some_and(|&bits| loads.is_rigid(bits))
-    };
-    leaving.clear();
-    collector.extend(leaving, (particles.owned(), GRAIN), |i| {
-        Some(i)
-            .filter(goes)
-            .map(|i| u32::try_from(i).unwrap_or(u32::MAX))
-    });
-}
-
-/// What particle `i` takes with it, under gravity (m/s²): mass, momentum, kinetic and internal energy,
+/// Sums that particle `i` takes with it, under gravity (m/s²): mass, momentum, kinetic and internal energy,
 /// that of gravity, and angular momentum.
 fn terms(particles: &ParticleStore, i: usize, g: &[f64; 3]) -> [f64; 10] {
     let (m, v, x) = (
@@ -152,14 +260,15 @@ fn terms(particles: &ParticleStore, i: usize, g: &[f64; 3]) -> [f64; 10] {
     ]
 }
 
-/// Books what the owned particles `leaving` take with them, of so many bodies, and why. Collective.
-pub(super) fn book(
-    comm: &Comm,
-    (state, why): (&mut RunState, Leave),
-    (particles, bodies): (&ParticleStore, usize),
-    loads: &Loads,
-    leaving: &[u32],
-) {
+/// Books the sums that the owned particles `leaving` take with them. Collective.
+fn book(comm: &Comm, why: Leave, inputs: &mut RemovalInputs, leaving: &[u32]) {
+    let RemovalInputs {
+        particles,
+        state,
+        loads,
+        bodies,
+    } = inputs;
+    let bodies = *bodies;
     let mut sums: Vec<[ExactSum; 10]> = (0..bodies).map(|_| Default::default()).collect();
     let mut counts = vec![0_u64; bodies];
     for &i in leaving {

@@ -1,26 +1,36 @@
-//! What a saved state must hold before a step believes it: a file may come from anybody.
+//! Checks of a saved state before a step relies on it: a file may come from anybody.
 
 use super::error::SetupError;
-use super::simulation::Simulation;
 use crate::diagnose::RunState;
+use crate::loads::Loads;
+use crate::measure::Measures;
 use comm::Comm;
+use model::Case;
 use particles::{FieldInfo, Life, ParticleStore};
 
 /// Largest count: beyond it one more may be lost in a sum, or run over.
 const MOST: u64 = 1 << 53;
 
-/// What a saved state may be wrong in, and whether it is.
+/// A possible fault of a saved state, and whether it is there.
 type Check<'a> = (&'static str, &'a dyn Fn() -> bool);
+
+/// A case as it begins.
+pub(super) struct Beginning<'a> {
+    pub case: &'a Case,
+    pub state: &'a RunState,
+    pub loads: &'a Loads,
+    pub measures: &'a Measures,
+}
 
 /// Refuses a saved state, or any rank's share of its particles, that is none of this case.
 /// Collective.
 pub(super) fn require_own(
     comm: &Comm,
-    simulation: &Simulation,
+    beginning: &Beginning,
     state: &RunState,
     particles: &ParticleStore,
 ) -> Result<(), SetupError> {
-    let (own, bodies) = (&simulation.state, simulation.case.bodies.len());
+    let (own, bodies) = (beginning.state, beginning.case.bodies.len());
     let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
     let checks: [Check; 8] = [
         ("it has other pairs of bodies or loads", &|| {
@@ -33,7 +43,7 @@ pub(super) fn require_own(
                 .any(|by_body| ![0, bodies].contains(&by_body.len()))
         }),
         ("it has other gauges or witness planes", &|| {
-            let carried = simulation.measures.gauges.count_carried();
+            let carried = beginning.measures.gauges.count_carried();
             [state.gauge_carriers.len(), state.passed.len()] != [carried, own.passed.len()]
         }),
         ("its times are none", &|| {
@@ -50,7 +60,7 @@ pub(super) fn require_own(
             particles
                 .load
                 .iter()
-                .any(|&bits| !simulation.loads.knows(bits))
+                .any(|&bits| !beginning.loads.knows(bits))
         }),
         ("it has numbers that are not finite", &|| {
             particles
@@ -68,7 +78,7 @@ pub(super) fn require_own(
     }
 }
 
-/// Whatever a state counts; what is negative is counted as very many.
+/// All counts of a state, negative ones as very large.
 fn counts(state: &RunState) -> impl Iterator<Item = u64> {
     let worst = &state.worst;
     let now = [

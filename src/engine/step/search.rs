@@ -1,86 +1,166 @@
-//! Who is whose neighbour, and who sleeps.
+//! The search for neighbours, and for the particles that need none.
 
-use super::candidate::{Criteria, criteria_fields};
-use super::simulation::Simulation;
-use super::timers::Phase;
-use crate::contact::Connectivity;
-use crate::domain::Decomposition;
-use crate::sph::with_formulation;
+use super::activity::{Activity, Surroundings};
+use super::candidate::{Criteria, CriteriaInputs, criteria_fields};
+use crate::contact::{Connectivity, Contact, ContactTable};
+use crate::domain::{Halo, Outset};
+use crate::fragments::Labels;
+use crate::sph::{Sph, with_formulation};
 use comm::Comm;
-use particles::Image;
+use model::{Case, SphForm};
+use particles::neighbours::Lists;
+use particles::{Active, ActiveMut, Image, ParticleStore};
+use populate::Brick;
 
-impl Simulation {
-    /// Who is whose neighbour at the current positions, over ranks and symmetry planes. Collective.
-    pub(super) fn search(&mut self, comm: &Comm) {
-        let Self {
+/// The neighbours of particles, those that rest far from all moving ones, and the pieces of bodies.
+pub struct Search {
+    /// Sorted images and their neighbours.
+    pub lists: Lists,
+    pub(super) activity: Activity,
+    pub(super) labels: Labels,
+}
+
+/// Inputs of the neighbour lists, after the exchange of motion.
+pub(super) struct ListInputs<'a> {
+    pub particles: &'a ParticleStore,
+    pub halo: &'a Halo,
+    pub sph: &'a mut Sph,
+    pub contact: &'a mut Contact,
+    /// Steps done.
+    pub step: u64,
+}
+
+/// Inputs of the choice of inactive particles, after a step.
+pub(super) struct ActivityInputs<'a> {
+    pub particles: &'a mut ParticleStore,
+    pub contact: &'a Contact,
+    /// This rank's part of space.
+    pub region: &'a Brick,
+    pub form: SphForm,
+    pub criteria: CriteriaInputs<'a>,
+}
+
+impl Search {
+    pub(super) fn new(case: &Case, table: &ContactTable, outset: &Outset) -> Self {
+        Self {
+            lists: Lists::new(case, table.groups.clone(), &outset.boxes, outset.longest),
+            activity: Activity::new(case),
+            labels: Labels::default(),
+        }
+    }
+
+    /// Owned particles, of which the inactive ones are left out.
+    pub(super) fn active<'a>(&'a self, particles: &'a ParticleStore) -> Active<'a> {
+        Active {
             particles,
-            state,
-            timers,
-            lists,
-            partition,
+            inactive: &self.activity.inactive,
+        }
+    }
+
+    /// As [`Self::active`], for those who write.
+    pub(super) fn active_mut<'a>(&'a self, particles: &'a mut ParticleStore) -> ActiveMut<'a> {
+        ActiveMut {
+            particles,
+            inactive: &self.activity.inactive,
+        }
+    }
+
+    /// Chooses the particles that the search of a step is among, and returns them.
+    pub(super) fn begin<'a>(
+        &'a mut self,
+        particles: &'a mut ParticleStore,
+        contact: &Contact,
+        step: u64,
+    ) -> ActiveMut<'a> {
+        self.activity.reactivate_moved(particles);
+        let links = contact.connectivity.is_active();
+        self.activity.begin_search(step, particles.owned(), links);
+        ActiveMut {
+            particles,
+            inactive: self.activity.unlisted(),
+        }
+    }
+
+    /// Lists the neighbours of particles at the current positions, over ranks and symmetry planes.
+    pub(super) fn list_neighbours(&mut self, inputs: ListInputs) {
+        let ListInputs {
+            particles,
             halo,
             sph,
             contact,
-            labels,
-            dormant,
-            ..
-        } = self;
-        dormant.follow(particles);
-        let links = contact.connectivity.is_active();
-        let (asleep, all_listed) = dormant.leave_out(state.step, particles.owned(), links);
-        let all = (&mut *particles, asleep);
-        halo.exchange_motion(comm, partition.reaches(), all, |particles, i| {
-            sph.smoothing.reach(particles, i)
-        });
-        timers.lap(Phase::HaloMotion);
+            step,
+        } = inputs;
+        let (lists, activity) = (&mut self.lists, &self.activity);
+        let active = Active {
+            particles,
+            inactive: activity.unlisted(),
+        };
         let images = particles.owned() + halo.others().len();
-        let meetings = contact.table.has_pairs().then_some(&contact.table.foreign);
+        let foreign = contact.table.has_pairs().then_some(&contact.table.foreign);
         let (scratch, resting) = sph.before_rates(images);
         let connectivity = &mut contact.connectivity;
         connectivity.sample(particles, |i| resting.holds(particles, i));
         let rests = |image: Image| {
-            // At the start nobody has been asked for anything yet.
-            state.step > 0
+            // At the start there are no rates yet.
+            step > 0
                 && connectivity.lets_rest(particles, image)
                 && resting.holds(particles, image.base())
         };
-        let is_due = connectivity.is_due(state.step);
-        let rests = (rests, !(is_due || all_listed));
-        lists.build((particles, asleep), halo.images(), meetings, rests, scratch);
-        let mirrors = halo.mirrors();
-        connectivity.separate(particles, lists, mirrors);
-        if let Some(table) = meetings {
+        let spared = !(connectivity.is_due(step) || activity.lists_all());
+        lists.build(active, halo.images(), foreign, rests, spared, scratch);
+        connectivity.separate(particles, lists, halo.mirrors());
+        if let Some(table) = foreign {
             lists.build_foreign(particles, table);
         }
         lists.join();
-        timers.lap(Phase::Neighbours);
-        if is_due {
-            labels.begin(particles.part.len());
-            Connectivity::link(lists, labels.sets());
-            dormant.join(labels.sets());
-            labels.settle(comm, Some(halo), &particles.id, particles.owned());
-            Connectivity::tell(labels.members(), particles);
-            timers.lap(Phase::Neighbours);
-        }
     }
 
-    /// Lets sleep what rests far from what does not, and wakes what that has come near to.
-    pub(super) fn settle(&mut self, comm: &Comm) {
-        if self.poison {
-            return;
-        }
-        let (particles, range) = (&self.particles, self.contact.table.longest_range());
-        let rules = (self.case.time_step, self.loads.gravity);
-        let region = self.partition.slabs().region(comm.rank());
-        let (sph, limits) = (&self.sph, &self.step_control.limits);
-        let links = self.contact.connectivity.is_active();
-        with_formulation!(self.case.sph.form, Form => {
-            let fields = criteria_fields!(particles);
-            let criteria = Criteria::<Form>::new(fields, sph, limits, rules);
-            let near = (&self.lists, range);
-            let within = (&region, links.then_some(&mut self.labels));
-            self.dormant.settle(particles, near, within, &criteria);
+    /// Labels the pieces of bodies that no chain of neighbours connects. Collective.
+    pub(super) fn label_pieces(
+        &mut self,
+        comm: &Comm,
+        particles: &mut ParticleStore,
+        halo: &mut Halo,
+    ) {
+        let labels = &mut self.labels;
+        labels.begin(particles.part.len());
+        Connectivity::link(&self.lists, labels.sets());
+        self.activity.join_links(labels.sets());
+        labels.finish(comm, Some(halo), &particles.id, particles.owned());
+        Connectivity::set_labels(labels.members(), particles);
+    }
+
+    /// Puts active particles in memory into the order of the last search. Returns whether there was one among these
+    /// particles.
+    pub(super) fn restore_order(&mut self, particles: &mut ParticleStore, sph: &mut Sph) -> bool {
+        let owned = particles.owned();
+        let active = ActiveMut {
+            particles,
+            inactive: self.activity.fixed(owned),
+        };
+        self.lists.restore_order(active, sph.scratch(owned))
+    }
+
+    /// Deactivates particles that rest far from all moving ones, and reactivates those that such come near to.
+    pub(super) fn update_activity(&mut self, inputs: ActivityInputs) {
+        let ActivityInputs {
+            particles,
+            contact,
+            region,
+            form,
+            criteria,
+        } = inputs;
+        let links = contact.connectivity.is_active();
+        let surroundings = Surroundings {
+            lists: &self.lists,
+            contact_range: contact.table.longest_range(),
+            region,
+            labels: links.then_some(&mut self.labels),
+        };
+        with_formulation!(form, Form => {
+            let criteria = Criteria::<Form>::new(criteria_fields!(particles), criteria);
+            self.activity.update(particles, surroundings, &criteria);
         });
-        self.dormant.count_work(&mut self.particles.work);
+        self.activity.count_work(&mut particles.work);
     }
 }

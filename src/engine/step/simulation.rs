@@ -1,27 +1,29 @@
-//! The simulation: everything a rank holds, and one step of it.
+//! The simulation: the phases of a rank's part of a running case, and the step that goes through them.
 
-use super::candidate::{Candidate, Criteria, StepControl};
-use super::dormant::Dormant;
-use super::error::{self, StepError};
-use super::flight::Sky;
+use super::accounts::{Accounts, MeasureInputs, TotalsInputs};
+use super::candidate::{Candidate, StepControl};
+use super::error::{self, SetupError, StepError};
+use super::fields::{store_of, unused_fields};
+use super::flight::FlightInputs;
 use super::integrate;
-use super::removal::Frozen;
+use super::removal::{Removal, RemovalInputs};
+use super::restored::{Beginning, require_own};
+use super::search::{ActivityInputs, ListInputs, Search};
+use super::setup;
+use super::space::Space;
 use super::timers::{Phase, Timers};
-use crate::contact::Contact;
+use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
-    Booked, KeptTotals, NumericalFailure, PostMortem, Reason, RunState, StepSums, Totals, fastest,
-    is_explained,
+    Booked, Leave, LoadState, NumericalFailure, PairState, Passed, Reason, Removed, RunState,
+    Votes, Worst, angular_momentum_scale,
 };
-use crate::domain::{Decomposition, Halo, Partition};
-use crate::fragments::Labels;
+use crate::domain::{Halo, NestedSlabs, Outset, Partition};
 use crate::loads::Loads;
-use crate::measure::Measures;
+use crate::measure::Gauges;
 use crate::sph::{Side, Sph, Step, with_formulation};
 use comm::Comm;
-use model::{Case, SphForm};
-use numerics::collector::Collector;
-use particles::neighbours::Lists;
-use particles::{HaloPhase, ParticleStore};
+use model::{Axis, Case, SphForm};
+use particles::{HaloPhase, Mirrors, ParticleStore};
 
 /// One rank's part of a running case.
 pub struct Simulation {
@@ -29,50 +31,181 @@ pub struct Simulation {
     pub case: Case,
     /// This rank's particles.
     pub particles: ParticleStore,
-    pub(super) frozen: Frozen,
-    /// Particles that are about to be taken out.
-    pub(super) leaving: Vec<u32>,
-    pub(super) collector: Collector,
     /// The scalar state, equal on all ranks.
     pub state: RunState,
-    /// Seconds by phase, and what was done in them.
+    /// Seconds by phase, and the particle updates done in them.
     pub timers: Timers,
-    /// Fill everything that is not state with NaN between steps: for tests.
-    pub poison: bool,
-    /// The choice of time steps, and requests to stop.
+    /// The choice of time steps, requests to stop, and a switch for tests.
     pub step_control: StepControl,
-    /// Sorted images and neighbours.
-    pub lists: Lists,
-    pub(super) partition: Partition,
-    pub(super) halo: Halo,
+    /// Partition of space among ranks, and halo.
+    pub(super) space: Space,
+    /// Neighbour lists, inactive particles, and pieces of bodies.
+    pub search: Search,
+    /// Sums of SPH.
     pub(super) sph: Sph,
+    /// Contact between bodies.
     pub(super) contact: Contact,
-    /// What rests far from what does not.
-    pub(super) dormant: Dormant,
-    /// Who hangs together with whom.
-    pub(super) labels: Labels,
+    /// Prescribed velocities, absorbing zones, rigid surfaces and gravity.
     pub(super) loads: Loads,
-    pub(super) sums: StepSums,
-    pub(super) kept_totals: KeptTotals,
-    pub(super) measures: Measures,
-}
-
-/// What the sums are told of a step `dt` (s) from a state.
-fn step(state: &RunState, loads: &Loads, dt: f64) -> Step {
-    Step {
-        dt,
-        last_dt: state.last_dt,
-        time: state.time + dt,
-        gravity: loads.gravity,
-    }
+    /// Sums over particles, and measures.
+    pub(super) accounts: Accounts,
+    /// Particles that are taken out or frozen.
+    pub(super) removal: Removal,
 }
 
 impl Simulation {
-    /// Whether the case has reached its end.
-    #[must_use]
-    pub fn is_finished(&self) -> bool {
-        let run = &self.case.run;
-        self.state.time >= run.end_time || run.max_steps.is_some_and(|n| self.state.step >= n)
+    /// Fills the bodies of a case, each rank its own brick, and evaluates the first forces.
+    /// Collective.
+    ///
+    /// # Errors
+    /// The same on all ranks if the case has no particles or too many, or blows up at once.
+    pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
+        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
+        let partition = Partition::new(&case, comm, &outset);
+        let mut simulation = Self::empty(case, comm, &outset, partition);
+        let Self {
+            case,
+            particles,
+            space,
+            loads,
+            ..
+        } = &mut simulation;
+        setup::populate(comm, case, loads, &mut space.partition, particles)?;
+        simulation.begin(comm)?;
+        simulation.open_departures();
+        Ok(simulation)
+    }
+
+    /// Takes up a run from its saved scalar state and any share of its saved particles.
+    /// Collective.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn resume(
+        case: Case,
+        comm: &Comm,
+        state: RunState,
+        particles: ParticleStore,
+    ) -> Result<Self, SetupError> {
+        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
+        let partition = Partition::none(&case, comm, &outset);
+        let mut simulation = Self::empty(case, comm, &outset, partition);
+        let beginning = Beginning {
+            case: &simulation.case,
+            state: &simulation.state,
+            loads: &simulation.loads,
+            measures: &simulation.accounts.measures,
+        };
+        require_own(comm, &beginning, &state, &particles)?;
+        (simulation.state, simulation.particles) = (state, particles);
+        simulation.open_departures();
+        let Self {
+            case,
+            particles,
+            space,
+            sph,
+            contact,
+            removal,
+            ..
+        } = &mut simulation;
+        removal.restore(comm, particles, unused_fields(case, &contact.table));
+        space.partition.begin(comm, particles, |particles, i| {
+            sph.smoothing.reach(particles, i)
+        });
+        setup::limit_count(comm, simulation.particles.owned() as u64)?;
+        Ok(simulation)
+    }
+
+    /// A case without particles.
+    fn empty(case: Case, comm: &Comm, outset: &Outset, partition: Partition) -> Self {
+        let contact = Contact::new(&case);
+        let table = &contact.table;
+        let accounts = Accounts::new(&case, table);
+        let particles = store_of(&case);
+        Self {
+            removal: Removal::new(&particles),
+            particles,
+            state: RunState {
+                pairs: vec![PairState::default(); table.active_pairs().len()],
+                loads: vec![LoadState::default(); case.load_names().count()],
+                passed: vec![Passed::default(); accounts.measures.witnesses.ledgers()],
+                ..RunState::default()
+            },
+            timers: Timers::default(),
+            step_control: StepControl::new(&case, table, comm),
+            space: Space {
+                partition,
+                halo: Halo::new(Mirrors::new(&case.symmetry)),
+            },
+            search: Search::new(&case, table, outset),
+            sph: Sph::new(&case),
+            loads: Loads::new(&case),
+            accounts,
+            contact,
+            case,
+        }
+    }
+
+    /// Ledgers of particles that leave the box of interest, which a case may have from a restart on.
+    fn open_departures(&mut self) {
+        if self.case.domain.keep.is_some() {
+            let bodies = self.case.bodies.len();
+            self.state.departed.resize(bodies, Removed::default());
+        }
+    }
+
+    /// First forces, sums and time step. Collective.
+    fn begin(&mut self, comm: &Comm) -> Result<(), SetupError> {
+        self.migrate(comm);
+        // The first search finds the pieces of bodies, and the order of the store.
+        self.find_neighbours(comm);
+        self.search
+            .restore_order(&mut self.particles, &mut self.sph);
+        self.find_neighbours(comm);
+        let mut capped = [(self.contact).begin(&mut self.particles, &self.search.lists)];
+        comm.sum_i64(&mut capped);
+        self.state.capped_reliefs = capped[0];
+        self.sum(comm, 0.0);
+        let candidate = self.kick(0.0);
+        let candidate = self.book_step(comm, 0.0, candidate);
+        let Self {
+            case,
+            particles,
+            state,
+            search,
+            loads,
+            accounts,
+            ..
+        } = self;
+        let inputs = TotalsInputs {
+            case,
+            active: search.active(particles),
+            loads,
+        };
+        state.initial = accounts.totals(comm, inputs, state.contact_energy);
+        let scale = angular_momentum_scale(particles, loads, comm);
+        state.angular_momentum_scale = Some(scale);
+        state.worst = Worst::default();
+        accounts.diagnose(comm, state, inputs);
+        state.worst.nearest = None;
+        self.choose_step(comm, candidate)?;
+        let Self {
+            case,
+            particles,
+            state,
+            space,
+            search,
+            accounts,
+            ..
+        } = self;
+        let inputs = MeasureInputs {
+            case,
+            particles,
+            lists: &search.lists,
+            mirrors: space.halo.mirrors(),
+        };
+        accounts.begin_measures(comm, state, inputs);
+        Ok(())
     }
 
     /// One step of kick–drift–kick. Collective.
@@ -81,13 +214,13 @@ impl Simulation {
     /// The same on all ranks if any particle's state is NaN or out of range.
     pub fn advance(&mut self, comm: &Comm) -> Result<(), StepError> {
         let (dt, reason) = self.state.next_step(self.case.run.end_time);
-        if self.poison {
-            self.particles.poison();
-        }
         let end = match reason {
             Reason::End => self.case.run.end_time,
             _ => self.state.time + dt,
         };
+        if self.step_control.poison {
+            self.particles.poison();
+        }
         self.timers.skip();
         self.kick_and_drift(dt, end);
         self.timers.lap(Phase::Integrate);
@@ -95,16 +228,18 @@ impl Simulation {
         self.timers.lap(Phase::Balance);
         self.migrate(comm);
         self.timers.lap(Phase::Migrate);
-        self.evaluate(comm, dt);
-        let own = self.kick(dt);
-        self.settle(comm);
+        self.find_neighbours(comm);
+        self.sum(comm, dt);
+        let candidate = self.kick(dt);
+        self.update_activity(comm);
         self.timers.lap(Phase::Integrate);
         self.state.step += 1;
         self.state.time = end;
         (self.state.last_dt, self.state.last_reason) = (dt, reason);
-        let candidate = self.book_step(comm, dt, own);
+        let candidate = self.book_step(comm, dt, candidate);
         self.timers.updates += self.particles.owned() as u64;
-        self.watch_witnesses();
+        let witnesses = &mut self.accounts.measures.witnesses;
+        witnesses.watch(&mut self.particles, &self.state);
         self.choose_step(comm, candidate)?;
         self.timers.lap(Phase::TimeStep);
         self.remove_departed(comm)
@@ -116,11 +251,11 @@ impl Simulation {
             case,
             particles,
             state,
-            halo,
+            space,
+            search,
             sph,
             loads,
-            sums,
-            dormant,
+            accounts: Accounts { sums, .. },
             ..
         } = self;
         loads.prepare(case, state.time, end);
@@ -128,90 +263,104 @@ impl Simulation {
         loads.book_drag(particles);
         state.book_first_half(loads, dt);
         particles.resize_halo(0);
-        dormant.follow(particles);
-        let moved = (&mut *particles, &dormant.asleep);
-        let work = integrate::kick_and_drift(moved, loads, &sph.smoothing, dt);
+        search.activity.reactivate_moved(particles);
+        let active = search.active_mut(particles);
+        let work = integrate::kick_and_drift(active, loads, &sph.smoothing, dt);
         sums.contact_work.merge(&work);
         sph.drift(particles, loads, dt);
-        sums.cross_planes(particles, halo.mirrors(), loads);
+        sums.cross_planes(particles, space.halo.mirrors(), loads);
     }
 
     /// Gives each rank its share of the work where it pays, and every few steps particles in memory the
-    /// order of the last search.
+    /// order of the last search. Collective.
     fn balance(&mut self, comm: &Comm) {
         let Self {
             particles,
             state,
             timers,
-            lists,
+            space,
+            search,
             sph,
-            partition,
-            dormant,
             ..
         } = self;
-        if lists.is_order_due {
-            let scratch = sph.scratch(particles.owned());
-            let fixed = dormant.fixed(particles.owned());
-            let all = (&mut *particles, fixed);
-            lists.is_order_due = !lists.restore_order(all, scratch);
+        if search.lists.is_order_due {
+            search.lists.is_order_due = !search.restore_order(particles, sph);
         }
         // After the next search, when those that change ranks now have found their place.
-        lists.is_order_due |= partition.is_regular(state.step);
-        if partition.is_due(state.step) {
-            let all = (&*particles, state.step);
-            partition.balance(comm, all, timers.busy(), |particles, i| {
-                sph.smoothing.reach(particles, i)
-            });
-            let region = partition.slabs().region(comm.rank());
-            dormant.withdraw(particles.owned(), &region);
+        search.lists.is_order_due |= space.partition.is_regular(state.step);
+        if space.partition.is_due(state.step) {
+            let (step, busy) = (state.step, timers.busy());
+            space.balance(comm, particles, &sph.smoothing, step, busy);
+            let region = space.region(comm);
+            search.activity.reactivate_near(&region, particles.owned());
         }
     }
 
     /// Sends particles to the ranks that own where they are. Collective.
-    pub(super) fn migrate(&mut self, comm: &Comm) {
-        let Self {
-            particles,
-            halo,
-            sph,
-            partition,
-            ..
-        } = self;
-        partition.migrate(comm, particles, halo, |particles, i| {
-            sph.smoothing.reach(particles, i)
-        });
+    fn migrate(&mut self, comm: &Comm) {
+        let smoothing = &self.sph.smoothing;
+        self.space.migrate(comm, &mut self.particles, smoothing);
     }
 
-    /// Stress, accelerations and rates at the current positions, from the predicted velocities,
-    /// densities and energies. Collective.
-    pub(super) fn evaluate(&mut self, comm: &Comm, dt: f64) {
-        self.search(comm);
-        self.sum(comm, dt);
-    }
-
-    /// The sums over the neighbours of the last search, after a step `dt` (s). Collective.
-    pub(super) fn sum(&mut self, comm: &Comm, dt: f64) {
+    /// Neighbours at the current positions, over ranks and symmetry planes. Collective.
+    fn find_neighbours(&mut self, comm: &Comm) {
         let Self {
             particles,
             state,
             timers,
-            lists,
-            halo,
+            space,
+            search,
+            sph,
+            contact,
+            ..
+        } = self;
+        let active = search.begin(particles, contact, state.step);
+        space.exchange_motion(comm, active, &sph.smoothing);
+        timers.lap(Phase::HaloMotion);
+        search.list_neighbours(ListInputs {
+            particles,
+            halo: &space.halo,
+            sph,
+            contact,
+            step: state.step,
+        });
+        timers.lap(Phase::Neighbours);
+        if contact.connectivity.is_due(state.step) {
+            search.label_pieces(comm, particles, &mut space.halo);
+            timers.lap(Phase::Neighbours);
+        }
+    }
+
+    /// Stress, accelerations and rates from the predicted velocities, densities and energies, over the
+    /// neighbours of the last search, after a step `dt` (s). Collective.
+    fn sum(&mut self, comm: &Comm, dt: f64) {
+        let Self {
+            particles,
+            state,
+            timers,
+            space: Space { halo, .. },
+            search: Search { lists, .. },
             sph,
             contact,
             loads,
             ..
         } = self;
-        let step = step(state, loads, dt);
+        let step = Step {
+            dt,
+            last_dt: state.last_dt,
+            time: state.time + dt,
+            gravity: loads.gravity,
+        };
         sph.rates(particles, lists, &step);
         timers.lap(Phase::Material);
         contact.measure(particles, lists, dt);
         timers.lap(Phase::ContactFractions);
-        let phase = contact.halo_of_forces();
-        halo.post(comm, particles, phase, sph.shown().map(|shown| &*shown));
+        let stress = contact.halo_of_forces();
+        halo.post(comm, particles, stress, sph.shown().map(|shown| &*shown));
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Inner);
         timers.lap(Phase::Momentum);
-        halo.finish(particles, phase, sph.shown());
+        halo.finish(particles, stress, sph.shown());
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);
@@ -227,67 +376,108 @@ impl Simulation {
         timers.lap(Phase::ContactForces);
     }
 
-    /// Second half kick of a step `dt` (s), zero at the start of a case. Gives this rank's
-    /// candidate on the next one.
-    pub(super) fn kick(&mut self, dt: f64) -> Candidate {
+    /// Second half kick of a step `dt` (s), zero at the start of a case. Returns this rank's
+    /// candidate for the next one.
+    fn kick(&mut self, dt: f64) -> Candidate {
         let Self {
             case,
             particles,
             step_control,
+            search,
             sph,
             loads,
-            sums,
-            dormant,
+            accounts: Accounts { sums, .. },
             ..
         } = self;
         loads.book_drag(particles);
-        let rules = (case.time_step, loads.gravity);
+        let criteria = step_control.criteria(sph, loads.gravity);
+        let active = search.active_mut(particles);
         let kicked = with_formulation!(case.sph.form, Form => {
-            let criteria = |fields| Criteria::<Form>::new(fields, sph, &step_control.limits, rules);
-            integrate::kick((particles, &dormant.asleep), loads, criteria, dt)
+            integrate::kick::<Form>(active, loads, criteria, dt)
         });
+        let kept = &search.activity.kept_candidate;
         sums.contact_work.merge(&kicked.work);
-        let (candidate, span) = &dormant.told;
         sums.span = kicked.span;
-        sums.span.join(span);
+        sums.span.join(&kept.span);
         loads.book(particles, dt, false);
         loads.relax(particles);
-        kicked.candidate.min(*candidate)
+        kicked.candidate.min(kept.candidate)
+    }
+
+    /// Deactivates particles that rest far from all moving ones, and reactivates those that such come near to.
+    fn update_activity(&mut self, comm: &Comm) {
+        if self.step_control.poison {
+            return;
+        }
+        let Self {
+            case,
+            particles,
+            step_control,
+            space,
+            search,
+            sph,
+            contact,
+            loads,
+            ..
+        } = self;
+        search.update_activity(ActivityInputs {
+            particles,
+            contact,
+            region: &space.region(comm),
+            form: case.sph.form,
+            criteria: step_control.criteria(sph, loads.gravity),
+        });
     }
 
     /// Joins the sums of all ranks into the state, after the second half of a step `dt` (s), and this rank's
-    /// candidate on the next step with those of others: gives the first. Collective.
-    pub(super) fn book_step(&mut self, comm: &Comm, dt: f64, own: Candidate) -> Candidate {
-        let corrects = self.case.sph.form != SphForm::Conventional;
-        let outside = !self.halo.mirrors().is_empty() || self.loads.act();
-        let sums_any = self.contact.table.is_active() || outside || corrects;
+    /// candidate for the next step with those of others. Returns the first of all. Collective.
+    fn book_step(&mut self, comm: &Comm, dt: f64, candidate: Candidate) -> Candidate {
+        let Self {
+            case,
+            particles,
+            state,
+            step_control,
+            space: Space { partition, halo },
+            sph,
+            contact,
+            loads,
+            accounts: Accounts { sums, .. },
+            ..
+        } = self;
+        let corrects = case.sph.form != SphForm::Conventional;
+        let outside = !halo.mirrors().is_empty() || loads.act();
+        let sums_any = contact.table.is_active() || outside || corrects;
         let mut booked = Booked {
-            uncorrected: self.sph.uncorrected(),
-            contact: &mut self.contact,
-            loads: &mut self.loads,
+            uncorrected: sph.uncorrected(),
+            contact,
+            loads,
         };
-        let (mut first, mut requests) = (own, self.step_control.requests);
-        let mut work = self.partition.count(comm, &self.particles);
-        let joined = sums_any.then_some(&mut booked);
-        self.sums
-            .join(comm, joined, (&mut first, &mut requests), &mut work);
-        self.partition.hear(comm, work);
-        self.step_control.agreed_requests = requests;
-        self.sums.book(&mut self.state, &mut booked, dt);
-        first
+        let [work, load] = partition.count(comm, particles);
+        let mut votes = Votes {
+            candidate,
+            requests: step_control.requests,
+            work,
+            load,
+        };
+        sums.join(comm, sums_any.then_some(&mut booked), &mut votes);
+        partition.receive_work(comm, [votes.work, votes.load]);
+        step_control.agreed_requests = votes.requests;
+        sums.book(state, &mut booked, dt);
+        votes.candidate
     }
 
     /// Chooses the next Δt, given the first candidate of all ranks. Collective.
-    pub(super) fn choose_step(&mut self, comm: &Comm, first: Candidate) -> Result<(), StepError> {
-        let sky = Sky {
+    fn choose_step(&mut self, comm: &Comm, first: Candidate) -> Result<(), StepError> {
+        let inputs = FlightInputs {
             case: &self.case,
             particles: &self.particles,
             table: &self.contact.table,
             loads: &self.loads,
-            mirrors: self.halo.mirrors(),
+            mirrors: self.space.halo.mirrors(),
             time: self.state.time,
         };
-        let chosen = self.step_control.choose(comm, first, &sky, &self.sums.span);
+        let span = &self.accounts.sums.span;
+        let chosen = self.step_control.choose(comm, first, &inputs, span);
         let (dt, reason) = chosen.map_err(|(kind, id)| self.failure(comm, kind, id))?;
         (self.state.dt, self.state.dt_reason) = (dt, reason);
         self.step_control.keep(&self.state);
@@ -297,64 +487,184 @@ impl Simulation {
     }
 
     /// Describes the particle `id`, wherever it is; the same text on all ranks. Collective.
-    fn failure(&self, comm: &Comm, kind: NumericalFailure, id: u64) -> StepError {
-        let what = (self.state.step, kind, id);
-        error::failure(comm, &self.case, &self.particles, what)
+    pub(super) fn failure(&self, comm: &Comm, kind: NumericalFailure, id: u64) -> StepError {
+        let (case, particles) = (&self.case, &self.particles);
+        error::failure(comm, case, particles, self.state.step, kind, id)
     }
 
-    /// Sums over all particles, into the state, with the errors that follow from them, and the
-    /// extremes since the last row. Collective.
-    pub fn diagnose(&mut self, comm: &Comm) {
-        self.join_extremes(comm);
-        let totals = self.totals(comm);
-        self.state.book_totals(totals, self.loads.gravity);
-    }
-
-    pub(super) fn totals(&mut self, comm: &Comm) -> Totals {
-        let (particles, loads) = (&self.particles, &self.loads);
-        let (kept, asleep) = (&mut self.kept_totals, &self.dormant.asleep);
-        let contact_energy = self.state.contact_energy;
-        let mut totals = Totals::of(particles, (kept, asleep), loads, contact_energy, comm);
-        if self.case.may_fail() {
-            totals.add_failure(particles, (kept, asleep), loads, comm);
-        }
-        totals.add_yielded(particles, loads, comm);
-        totals
-    }
-
-    /// Joins the extremes of all ranks into the state: before rows and checkpoints. Collective.
-    pub fn join_extremes(&mut self, comm: &Comm) {
-        self.sums.join_extremes(comm, &mut self.state);
-    }
-
-    /// Whether the kinetic energy, as of the last [`Simulation::diagnose`], can have come from
-    /// anywhere. Collective.
-    ///
-    /// # Errors
-    /// The same on all ranks: [`StepError::Failure`] of the fastest particle if it cannot.
-    pub fn check_gain(&self, comm: &Comm) -> Result<(), StepError> {
-        let hidden = self.step_control.limits.hidden_energy;
-        if is_explained(&self.state, hidden, self.case.numerical_limits.gain_max) {
+    /// Every few steps takes out particles that have left the box of interest, if the case has one. After the
+    /// choice of a step, which finds particles whose state is NaN. Collective.
+    fn remove_departed(&mut self, comm: &Comm) -> Result<(), StepError> {
+        let Self {
+            case,
+            particles,
+            state,
+            loads,
+            removal,
+            ..
+        } = self;
+        let Some(keep) = &case.domain.keep else {
             return Ok(());
+        };
+        if removal.choose_departed(comm, particles, loads, keep, state.step) {
+            // The step is chosen once more.
+            let limited = state.dt_reason == Reason::Contact;
+            state.worst.contact_limited_steps -= u64::from(limited);
+            self.take_out(comm, Leave::Departed)?;
         }
-        let id = fastest(comm, &self.particles, &self.loads);
-        Err(self.failure(comm, NumericalFailure::Gain, id))
+        Ok(())
     }
 
-    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others.
+    /// Takes out the particles that have been chosen for it, and books them. Then sums the forces on the others anew where
+    /// they stand, so that momentum and energy balance as before. Returns the number of particles taken out on all ranks.
+    /// Collective.
+    ///
+    /// Velocities do not change by it, so nothing is kicked. Particles that leant on those taken out, or hung on
+    /// them, are free of them from then on, as at a new surface.
+    pub(super) fn take_out(&mut self, comm: &Comm, why: Leave) -> Result<u64, StepError> {
+        let Self {
+            case,
+            particles,
+            state,
+            search,
+            loads,
+            removal,
+            ..
+        } = self;
+        let inactive = &search.activity.inactive;
+        debug_assert!(!(removal.leaving().iter()).any(|&i| inactive.holds(i as usize)));
+        let inputs = RemovalInputs {
+            particles,
+            state,
+            loads,
+            bodies: case.bodies.len(),
+        };
+        let count = removal.take_out(comm, why, inputs)?;
+        if why == Leave::Failed {
+            // Predictions of their neighbours may be spoilt.
+            let owned = particles.owned();
+            particles.predicted_velocity[..owned].copy_from_slice(&particles.velocity[..owned]);
+            particles.predicted_density[..owned].copy_from_slice(&particles.density[..owned]);
+        }
+        loads.prepare(case, state.time, state.time);
+        let (contact_energy, worst) = (state.contact_energy, state.worst);
+        self.find_neighbours(comm);
+        self.sum(comm, 0.0);
+        let candidate = self.kick(0.0);
+        // The sums of a step of no length have no work in them. Its defect is taken with the energy that has
+        // been lost, so the loss must be known first.
+        let candidate = self.book_step(comm, 0.0, candidate);
+        let lost = contact_energy - self.state.contact_energy;
+        *self.state.leaving(why).1 += lost;
+        self.state.worst = worst;
+        self.state.book_defect();
+        self.choose_step(comm, candidate)?;
+        Ok(count)
+    }
+
+    /// Whether the case has reached its end.
     #[must_use]
-    pub fn post_mortem(&self, id: u64, rank: usize) -> Option<PostMortem> {
-        let reach = 4.0 * self.sph.smoothing.longest();
-        let past = self.step_control.past();
-        PostMortem::of((id, rank), &self.particles, reach, &self.state, past)
+    pub fn is_finished(&self) -> bool {
+        let run = &self.case.run;
+        self.state.time >= run.end_time || run.max_steps.is_some_and(|n| self.state.step >= n)
     }
 
-    /// Does something, such as writing files, while the store holds this rank's frozen particles
+    /// Does a task, such as writing files, while the store holds this rank's frozen particles
     /// too, in place of the halo.
     pub fn with_frozen<T>(&mut self, task: impl FnOnce(&Self) -> T) -> T {
-        self.frozen.append_to(&mut self.particles);
+        self.removal.append_frozen(&mut self.particles);
         let result = task(self);
-        self.frozen.take_from(&mut self.particles);
+        self.removal.drop_frozen(&mut self.particles);
         result
+    }
+
+    /// Particles that this rank has frozen.
+    #[must_use]
+    pub fn frozen(&self) -> usize {
+        self.removal.frozen()
+    }
+
+    /// Particles of this rank that steps leave out, as they rest far from all moving ones.
+    #[must_use]
+    pub fn inactive(&self) -> usize {
+        self.particles.owned() - self.search.active(&self.particles).count()
+    }
+
+    /// Partition of space among ranks.
+    #[must_use]
+    pub fn slabs(&self) -> &NestedSlabs {
+        self.space.partition.slabs()
+    }
+
+    /// The axes along which space is cut, by level.
+    #[must_use]
+    pub fn axes_of_slabs(&self) -> Vec<Axis> {
+        let slabs = self.slabs();
+        let levels = 0..slabs.levels();
+        levels.map(|level| Axis::ALL[slabs.axis(level)]).collect()
+    }
+
+    /// How often levels or axes of the slabs have changed since the start of this process.
+    #[must_use]
+    pub fn changes_of_slabs(&self) -> u64 {
+        self.space.partition.changes()
+    }
+
+    /// Particles that this rank exchanges with others in each step.
+    #[must_use]
+    pub fn halo(&self) -> &Halo {
+        &self.space.halo
+    }
+
+    /// Messages and bytes that this rank has sent.
+    #[must_use]
+    pub fn traffic(&self) -> (u64, u64) {
+        self.space.traffic()
+    }
+
+    /// The contact table.
+    #[must_use]
+    pub fn contact(&self) -> &ContactTable {
+        &self.contact.table
+    }
+
+    /// The gauges of the case.
+    #[must_use]
+    pub fn gauges(&self) -> &Gauges {
+        &self.accounts.measures.gauges
+    }
+
+    /// Bytes that this rank holds in particle arrays, lists and buffers.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.memory_by_part().iter().map(|(_, bytes)| bytes).sum()
+    }
+
+    /// The same by what they are for.
+    #[must_use]
+    pub fn memory_by_part(&self) -> [(&'static str, usize); 9] {
+        let Search {
+            lists,
+            activity,
+            labels,
+        } = &self.search;
+        let [order, motion, neighbours, foreign] = lists.memory_by_part();
+        let others = activity.memory()
+            + labels.memory()
+            + self.removal.memory()
+            + self.loads.memory()
+            + self.accounts.memory()
+            + self.step_control.memory();
+        [
+            ("particles", self.particles.memory()),
+            ("order", order),
+            ("motion_records", motion),
+            ("neighbours", neighbours),
+            ("foreign_neighbours", foreign),
+            ("stress_records", self.sph.memory()),
+            ("contact", self.contact.memory()),
+            ("halo_and_balance", self.space.memory()),
+            ("others", others),
+        ]
     }
 }

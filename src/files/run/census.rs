@@ -5,6 +5,7 @@ use crate::output::fragments::{self, FragmentTable};
 use crate::output::{OutputError, RunFolder, Schedule, on_root};
 use comm::Comm;
 use engine::step::Simulation;
+use engine::step::fragments::find_in;
 use model::FragmentOptions;
 
 /// Whether fragments are told after a step between two times (s), after which a snapshot may be due,
@@ -26,7 +27,7 @@ pub fn take(
     tables: Option<(&RunFolder, Option<&mut Tables>)>,
 ) -> Result<Vec<u64>, OutputError> {
     let options = simulation.case.fragments.unwrap_or_default();
-    let census = simulation.fragments(comm, &options);
+    let census = find_in(simulation, comm, &options);
     if let Some((folder, tables)) = tables {
         let (case, state) = (&simulation.case, &simulation.state);
         on_root(comm, || {

@@ -29,7 +29,8 @@ use crate::output::{
     write_json,
 };
 use comm::Comm;
-use engine::step::{self, Simulation, StepError, Timers};
+use engine::step::failure::{check_gain, post_mortem as post_mortem_of, remove_failed};
+use engine::step::{self, Simulation, StepError, Timers, measurements};
 use model::NumericalFailurePolicy;
 
 /// One rank's part of a run in its folder.
@@ -80,7 +81,7 @@ impl<'a> Driver<'a> {
     ) -> Result<Self, OutputError> {
         let comm = launch.comm;
         let set_up = launch.ready.elapsed().as_secs_f64();
-        simulation.poison = args.poison;
+        simulation.step_control.poison = args.poison;
         // What set-up took is no part of a step.
         simulation.timers = Timers::default();
         let plans = Plan::all(&simulation.case, &simulation.particles)?;
@@ -178,7 +179,7 @@ impl<'a> Driver<'a> {
             let begun = Instant::now();
             self.write(comm, before).map_err(|e| e.to_string())?;
             self.output_time.add(begun);
-            if let Err(error) = self.simulation.check_gain(comm) {
+            if let Err(error) = check_gain(&self.simulation, comm) {
                 self.handle_failure(comm, error)?;
             }
             self.simulation.timers.lap(step::Phase::Output);
@@ -202,7 +203,7 @@ impl<'a> Driver<'a> {
             if self.post_mortems < POST_MORTEMS {
                 self.post_mortems += 1;
                 let simulation = &self.simulation;
-                let about = simulation.post_mortem(id, comm.rank());
+                let about = post_mortem_of(simulation, id, comm.rank());
                 let written = about.map_or(Ok(()), |about| {
                     post_mortem::write(
                         &stem,
@@ -225,7 +226,7 @@ impl<'a> Driver<'a> {
             if kind.is_of_all() {
                 return Err(text);
             }
-            match self.simulation.remove_failed(comm) {
+            match remove_failed(&mut self.simulation, comm) {
                 Ok(count) => {
                     self.log(
                         comm,
@@ -264,7 +265,7 @@ impl<'a> Driver<'a> {
             || stop::wants_checkpoint(self.simulation.step_control.agreed_requests);
         let rows = RowSchedule::of(&self.simulation.case);
         if finished || rows.sums_are_due(step, before, now) {
-            self.simulation.diagnose(comm);
+            measurements::diagnose(&mut self.simulation, comm);
         }
         if finished || rows.is_due(step, before, now) {
             let of_bodies = finished || rows.bodies_are_due(step, before, now);
@@ -299,7 +300,7 @@ impl<'a> Driver<'a> {
         self.write_crossings(comm)?;
         let load = load(comm, &self.simulation);
         let bodies = if of_bodies && self.simulation.case.measure.bodies {
-            self.simulation.measure_bodies(comm)
+            measurements::bodies(&mut self.simulation, comm)
         } else {
             Vec::new()
         };

@@ -12,7 +12,7 @@ use super::load::Load;
 use crate::output::gauge_records::{self, GaugeRecords};
 use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
 use engine::measure::{BodyFigures, Crossing, Findings, GaugeRow};
-use engine::step::{RunState, Simulation};
+use engine::step::{RunState, Simulation, measurements};
 use model::{Case, NumericalFailurePolicy, SphForm};
 
 /// The tables of a run, written by rank 0.
@@ -230,7 +230,7 @@ impl Tables {
     fn write_passed(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
         if let Some([table, _]) = &mut self.witnesses {
-            let mut passed = simulation.passed().into_iter();
+            let mut passed = measurements::passed(simulation).into_iter();
             for plane in &case.measure.witnesses {
                 for body in &case.bodies {
                     for (way, passed) in DIRECTIONS.into_iter().zip(&mut passed) {

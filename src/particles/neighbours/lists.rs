@@ -12,7 +12,7 @@ use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::sequence::Sequence;
 use crate::Mirrors;
-use crate::{Asleep, GRAIN, HaloImages, Image, ParticleStore, Scatter, resize};
+use crate::{Active, ActiveMut, GRAIN, HaloImages, Image, ParticleStore, Scatter, resize};
 use model::{Body, Case, SmoothingLength};
 use numerics::collector::Collector;
 use numerics::extent::{Extent, around};
@@ -39,7 +39,7 @@ pub struct Lists {
     /// stress, sums are zero to the bit and need not be made.
     common_velocity: Vec<[f64; 3]>,
     order: Vec<u32>,
-    /// That of all, where some sleep.
+    /// That of all, where some are inactive.
     full_order: Vec<u32>,
     collector: Collector,
 }
@@ -190,22 +190,24 @@ impl Lists {
         ]
     }
 
-    /// Sorts all particles that are awake and images, and lists the neighbours of each in its own group; if lists are
-    /// `spared`, not of what rests far from what moves and from `contact`, if there is any: `rests` tells of an image of a
-    /// particle of this rank whether nothing changes it as long as nothing moves around it. `scratch` is memory to work in,
-    /// see [`Sequence::build`].
+    /// Sorts all active particles and images, and lists the neighbours of each in its own group. Where lists are
+    /// `spared`, particles that rest far from moving ones, and from `contact` if there is any, have none: `rests` says of
+    /// an image of a particle of this rank that nothing changes it as long as nothing moves around it. `scratch` is memory
+    /// to work in, see [`Sequence::build`].
     pub fn build<R: bytemuck::Pod>(
         &mut self,
-        (particles, asleep): (&ParticleStore, &Asleep),
+        active: Active,
         halo: HaloImages,
         contact: Option<&ForeignTable>,
-        (rests, spared): (impl Fn(Image) -> bool + Sync, bool),
+        rests: impl Fn(Image) -> bool + Sync,
+        spared: bool,
         scratch: &mut [R],
     ) {
+        let particles = active.particles;
         let (owned, others) = (particles.owned(), halo.images);
         let (mirrors, groups) = (halo.mirrors, &self.groups);
         let (spare, common) = (self.spare_quiescent, &self.common_velocity);
-        resize(&mut self.motion, asleep.awake(owned) + others.len());
+        resize(&mut self.motion, active.count() + others.len());
         let motion = Scatter::new(&mut self.motion);
         let group_of = |base: usize| group_of(groups, particles, base);
         let facts = |image: Image| {
@@ -221,7 +223,7 @@ impl Lists {
         let sequence = &mut self.sequence;
         sequence.build(
             scratch,
-            (owned, asleep),
+            (owned, active.inactive),
             (others, halo.below),
             facts,
             |index, image| {
@@ -287,17 +289,21 @@ impl Lists {
         );
     }
 
-    /// Puts what is awake in the store into the canonical order of the last search, so that memory follows space,
-    /// unless it nearly is. Results do not depend on it. Returns whether there was such a search.
+    /// Puts the active particles of the store into the canonical order of the last search, so that memory follows space,
+    /// unless they nearly are. Results do not depend on it. Returns whether there was such a search.
     /// `scratch` is memory to work in.
     pub fn restore_order<R: bytemuck::Pod>(
         &mut self,
-        (particles, asleep): (&mut ParticleStore, &Asleep),
+        active: ActiveMut,
         scratch: &mut [R],
     ) -> bool {
+        let ActiveMut {
+            particles,
+            inactive,
+        } = active;
         let (owned, images) = (particles.owned(), self.sequence.images());
         let own = |image: &Image| {
-            image.code() == 0 && image.base() < owned && !asleep.holds(image.base())
+            image.code() == 0 && image.base() < owned && !inactive.holds(image.base())
         };
         self.order.clear();
         let all = (images.len(), GRAIN);
@@ -306,16 +312,16 @@ impl Lists {
             let place = |image: Image| image.base() as u32;
             Some(images[index]).filter(own).map(place)
         });
-        let awake = asleep.awake(owned);
-        let known = self.order.len() == awake;
+        let active = inactive.count_active(owned);
+        let known = self.order.len() == active;
         let pairs = self.order.par_windows(2).with_min_len(GRAIN);
-        let follows = |a: u32, b: u32| b == a + 1 || b > a && asleep.is_gap(a + 1, b);
+        let follows = |a: u32, b: u32| b == a + 1 || b > a && inactive.is_gap(a + 1, b);
         let astray = pairs.filter(|pair| !follows(pair[0], pair[1]));
-        if !known || astray.count() <= awake / ASTRAY {
+        if !known || astray.count() <= active / ASTRAY {
             return known;
         }
         let scratch = bytemuck::cast_slice_mut(scratch);
-        if asleep.is_empty() {
+        if inactive.is_empty() {
             particles.keep(&self.order, scratch);
             return true;
         }
@@ -327,8 +333,8 @@ impl Lists {
         let full = Scatter::new(&mut self.full_order);
         let order = self.order.par_iter().enumerate().with_min_len(GRAIN);
         order.for_each(|(n, &place)| {
-            // SAFETY: each place in the store is that of one particle that is awake.
-            unsafe { *full.slot(asleep.nth(n)) = place };
+            // SAFETY: each place in the store is that of one active particle.
+            unsafe { *full.slot(inactive.nth_active(n)) = place };
         });
         particles.rearrange(&self.full_order, scratch);
         true

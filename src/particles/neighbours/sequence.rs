@@ -10,7 +10,7 @@ use super::columns::ColumnGrid;
 use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
 use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
-use crate::{Asleep, Image, Scatter, resize};
+use crate::{Image, Inactive, Scatter, resize};
 use numerics::lanes::{LANES, Lanes};
 use numerics::ordered::ordered;
 
@@ -71,7 +71,7 @@ impl Sequence {
     /// Words of scratch memory that [`Self::build`] needs for each image.
     pub const SCRATCH_WORDS: usize = SCRATCH_WORDS;
 
-    /// Sorts those of the particles `0..owned` of the store that are awake, and the images `others` (mirror images
+    /// Sorts those of the particles `0..owned` of the store that are active, and the images `others` (mirror images
     /// of these, and halo particles with theirs; the first `below` of them stand below the particles as far as
     /// one can tell, the rest above, which saves work). `facts` tells position, id and group of an
     /// image; `emit` is called once with each index of the sequence and the image that stands
@@ -79,18 +79,18 @@ impl Sequence {
     pub fn build(
         &mut self,
         scratch: &mut [u64],
-        (owned, asleep): (usize, &Asleep),
+        (owned, inactive): (usize, &Inactive),
         (others, below): (&[Image], usize),
         facts: impl Fn(Image) -> ImageFacts + Sync,
         emit: impl Fn(usize, Image) -> ImageState + Sync,
     ) {
-        let awake = asleep.awake(owned);
+        let active = inactive.count_active(owned);
         self.others = others.len();
-        let count = awake + others.len();
+        let count = active + others.len();
         let image = |k: usize| match k.checked_sub(below) {
             None => others[k],
-            Some(own) if own < awake => Image::new(asleep.nth(own), 0),
-            Some(_) => others[k - awake],
+            Some(own) if own < active => Image::new(inactive.nth_active(own), 0),
+            Some(_) => others[k - active],
         };
         self.sorter.scatter(
             scratch,

@@ -6,6 +6,7 @@ use super::Driver;
 use crate::output::{OutputError, checkpoint, on_root};
 use crate::run::tables::Tables;
 use comm::Comm;
+use engine::step::measurements;
 
 impl Driver<'_> {
     /// Writes a checkpoint.
@@ -15,7 +16,7 @@ impl Driver<'_> {
         // Rows before this checkpoint are not written again once it is there.
         on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
-        self.simulation.join_extremes(comm);
+        measurements::join_extremes(&mut self.simulation, comm);
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
             let state = &simulation.state;

@@ -3,6 +3,7 @@
 use super::{Driver, census};
 use crate::output::{OutputError, Schedule, on_root};
 use comm::Comm;
+use engine::step::measurements;
 use model::Cadence;
 
 impl Driver<'_> {
@@ -21,7 +22,7 @@ impl Driver<'_> {
             Cadence::Steps(steps) => step.is_multiple_of(steps),
             Cadence::Time(time) => step == 0 || Schedule::new(Some(time)).is_due(before, now),
         };
-        let read = self.simulation.read_gauges(comm, due);
+        let read = measurements::read_gauges(&mut self.simulation, comm, due);
         if read.is_empty() {
             return Ok(());
         }
@@ -40,7 +41,7 @@ impl Driver<'_> {
         if options.measures.is_empty() || !due {
             return Ok(());
         }
-        let found = self.simulation.measure(comm);
+        let found = measurements::findings(&mut self.simulation, comm);
         on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write_findings(&self.simulation, &found),
             None => Ok(()),
@@ -49,7 +50,7 @@ impl Driver<'_> {
 
     /// Who has passed witness planes since the last time.
     pub(super) fn write_crossings(&mut self, comm: &Comm) -> Result<(), OutputError> {
-        let crossings = self.simulation.join_crossings(comm);
+        let crossings = measurements::join_crossings(&mut self.simulation, comm);
         if crossings.is_empty() {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! Where not all rests.
+//! Cells of space with particles that do not rest.
 
 use rayon::prelude::*;
 
@@ -6,9 +6,9 @@ use crate::domain::Span;
 use numerics::collector::Collector;
 use particles::neighbours::{Chunk, Lists};
 
-/// Where not all rests: cells of space somewhat narrower than what sleeps is away from it.
+/// Cells of space with particles that do not rest, kept from step to step.
 #[derive(Debug, Default)]
-pub(super) struct Busy {
+pub(super) struct MovingCells {
     /// Edge (m).
     width: f64,
     /// Ascending.
@@ -18,8 +18,8 @@ pub(super) struct Busy {
     collector: Collector,
 }
 
-impl Busy {
-    /// Finds the cells of a width (m) in which not all rests.
+impl MovingCells {
+    /// Finds the cells of a width (m).
     pub fn find(&mut self, lists: &Lists, width: f64) {
         self.width = width;
         self.cells.clear();
@@ -54,7 +54,7 @@ impl Busy {
         (least[0]..=most[0]).any(|x| {
             (least[1]..=most[1]).any(|y| {
                 let first = [x, y, least[2]];
-                let at = self.cells.partition_point(|busy| *busy < first);
+                let at = self.cells.partition_point(|cell| *cell < first);
                 let next = self.cells.get(at);
                 next.is_some_and(|next| *next <= [x, y, most[2]])
             })
@@ -67,14 +67,14 @@ fn index(x: f64, width: f64) -> i64 {
     (x / width).floor() as i64
 }
 
-/// The cells of clusters of a task that do not rest, or fly.
+/// The cells of clusters of a chunk that do not rest, or rest while their body flies.
 fn cells_of(chunk: &Chunk, lists: &Lists, width: f64) -> impl Iterator<Item = [i64; 3]> {
-    let busy = chunk
+    let moving = chunk
         .iter()
         .filter(|(cluster, _, among)| !among.resting || !lists.is_still(cluster.group));
     // Clusters of a column stand in the same few cells.
     let (mut recent, mut next) = ([[i64::MAX; 3]; 16], 0);
-    let cells = busy.flat_map(move |(cluster, ..)| {
+    let cells = moving.flat_map(move |(cluster, ..)| {
         let along = |a: usize| index(cluster.lower[a], width)..=index(cluster.upper[a], width);
         let (y, z) = (along(1), along(2));
         along(0).flat_map(move |x| {

@@ -1,10 +1,10 @@
-//! What a file tells of a particle beside its velocity, density, energy and plastic strain.
+//! Values of particles from files, beside velocity, density, energy and plastic strain.
 
 use model::{Body, Quantity};
 use particles::ParticleStore;
 
-/// Gives the particle at place `i` of the store what the file of its body tells of the row `index`.
-pub fn take_on(body: &Body, particles: &mut ParticleStore, i: usize, index: u64) {
+/// Gives the particle at place `i` of the store the values of row `index` of the file of its body.
+pub fn set_from_file(body: &Body, particles: &mut ParticleStore, i: usize, index: u64) {
     let (Some((cloud, _)), Ok(row)) = (body.cloud(), usize::try_from(index)) else {
         return;
     };
@@ -21,8 +21,8 @@ pub fn take_on(body: &Body, particles: &mut ParticleStore, i: usize, index: u64)
         (Quantity::FailureEnergy, &mut particles.failure_energy),
     ] {
         // Not every case has use for them.
-        if let (Some(&[told]), Some(value)) = (cloud.get(quantity, row), values.get_mut(i)) {
-            *value = told;
+        if let (Some(&[given]), Some(value)) = (cloud.get(quantity, row), values.get_mut(i)) {
+            *value = given;
         }
     }
     let displacement = cloud.get(Quantity::HourglassDisplacement, row);

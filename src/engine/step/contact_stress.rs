@@ -1,4 +1,4 @@
-//! What snapshots show and no step needs.
+//! Stress by contact, which snapshots show and no step needs.
 
 use rayon::prelude::*;
 
@@ -11,7 +11,7 @@ use particles::Mirrors;
 use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::{HaloPhase, ParticleStore};
 
-/// What the pair forces of a particle in contact carry.
+/// Stress that the pair forces of a particle in contact carry.
 #[derive(Debug, Clone, Copy)]
 pub struct Carried {
     /// Index of the particle.
@@ -23,69 +23,73 @@ pub struct Carried {
     pub normal: [f64; 3],
 }
 
-impl Simulation {
-    /// What the pair forces of each owned particle in contact carry. Right after a step, before the
-    /// particles change.
-    #[must_use]
-    pub fn carried_in_contact(&self) -> Vec<Carried> {
-        let (particles, lists) = (&self.particles, &self.lists);
-        let borne = self.contact.borne(particles, lists, self.state.last_dt);
-        let forces = StressForces::new(&self.case, particles, lists, &self.sph);
-        of_receivers(lists, |i, place, neighbours| {
-            let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
-            let borne = &borne[at].1;
-            let mut virial = forces.virial(place, neighbours);
-            virial.join(&borne.virial);
-            let volume = particles.mass[i] / particles.density[i];
-            let press = norm(&borne.press);
-            Some(Carried {
-                particle: i,
-                stress: virial.0.map(|v| v / volume),
-                normal: borne.press.map(|f| f / press),
-            })
+/// Stress that the pair forces of each owned particle in contact carry. Right after a step, before the
+/// particles change.
+#[must_use]
+pub fn carried_in(simulation: &Simulation) -> Vec<Carried> {
+    let (particles, lists) = (&simulation.particles, &simulation.search.lists);
+    let borne = (simulation.contact).borne(particles, lists, simulation.state.last_dt);
+    let forces = StressForces::new(&simulation.case, particles, lists, &simulation.sph);
+    of_receivers(lists, |i, place, neighbours| {
+        let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
+        let borne = &borne[at].1;
+        let mut virial = forces.virial(place, neighbours);
+        virial.join(&borne.virial);
+        let volume = particles.mass[i] / particles.density[i];
+        let press = norm(&borne.press);
+        Some(Carried {
+            particle: i,
+            stress: virial.0.map(|v| v / volume),
+            normal: borne.press.map(|f| f / press),
         })
-    }
+    })
+}
 
-    /// Writes into `contact_stress` what the traction across a particle in contact is more than
-    /// that of its own stress. Right after a step, before the particles change. Collective.
-    ///
-    /// The traction is that of [`Self::carried_in_contact`], as the kernel averages it over the
-    /// particles of the body that are in contact, on the plane that contact presses on (theory page
-    /// "Contact").
-    pub fn measure_contact_stress(&mut self, comm: &Comm) {
-        if !self.contact.table.is_active() {
-            return;
-        }
-        let mut carried = self.carried_in_contact();
-        carried.retain(|of| of.stress != [0.0; 6]);
-        let field = &mut self.particles.contact_stress;
-        field.fill([0.0; 6]);
-        for of in &carried {
-            field[of.particle] = of.stress;
-        }
-        self.halo
-            .exchange(comm, &mut self.particles, HaloPhase::SHOWN);
-        let (particles, lists) = (&self.particles, &self.lists);
-        let kernel = Kernel::new(self.case.dimension);
-        let means = of_receivers(lists, |i, place, neighbours| {
-            let is_there = particles.contact_stress[i] != [0.0; 6];
-            is_there.then(|| mean_carried(&kernel, particles, lists, (place, neighbours)))
-        });
-        for (of, mean) in carried.iter().zip(means) {
-            let own = stress(&self.particles, of.particle);
-            let more = std::array::from_fn(|k| mean[k] - own[k]);
-            self.particles.contact_stress[of.particle] = on_plane(&more, &of.normal);
-        }
+/// Writes into `contact_stress` the traction across each particle in contact beyond that of its own
+/// stress. Right after a step, before the particles change. Collective.
+///
+/// The traction is that of [`carried_in`], as the kernel averages it over the particles of the body that
+/// are in contact, on the plane that contact presses on (theory page "Contact").
+pub fn measure_in(simulation: &mut Simulation, comm: &Comm) {
+    if !simulation.contact.table.is_active() {
+        return;
+    }
+    let mut carried = carried_in(simulation);
+    carried.retain(|of| of.stress != [0.0; 6]);
+    let Simulation {
+        case,
+        particles,
+        search,
+        space,
+        ..
+    } = simulation;
+    let field = &mut particles.contact_stress;
+    field.fill([0.0; 6]);
+    for of in &carried {
+        field[of.particle] = of.stress;
+    }
+    space.halo.exchange(comm, particles, HaloPhase::SHOWN);
+    let (all, lists) = (&*particles, &search.lists);
+    let kernel = Kernel::new(case.dimension);
+    let means = of_receivers(lists, |i, place, neighbours| {
+        let is_there = all.contact_stress[i] != [0.0; 6];
+        is_there.then(|| mean_carried(&kernel, all, lists, place, neighbours))
+    });
+    for (of, mean) in carried.iter().zip(means) {
+        let own = stress(particles, of.particle);
+        let more = std::array::from_fn(|k| mean[k] - own[k]);
+        particles.contact_stress[of.particle] = on_plane(&more, &of.normal);
     }
 }
 
 /// Mean over a particle in contact and its neighbours that are in contact too,
-/// `Σ V_j W_ij S_j / Σ V_j W_ij`, of what stands in `contact_stress`.
+/// `Σ V_j W_ij S_j / Σ V_j W_ij`, of the values S in `contact_stress`.
 fn mean_carried(
     kernel: &Kernel,
     particles: &ParticleStore,
     lists: &Lists,
-    (place, neighbours): (u32, &[u32]),
+    place: u32,
+    neighbours: &[u32],
 ) -> [f64; 6] {
     let (images, motion) = (lists.images(), lists.motion());
     let h = |place: u32| particles.smoothing_length[images[place as usize].base()];
@@ -108,8 +112,8 @@ fn mean_carried(
     sum.map(|s| s / weights)
 }
 
-/// What `work` finds of owned particles, given the index of each, its place among the images and
-/// its neighbours in its own body, itself among them; in the order of the lists.
+/// Results of `work` for owned particles, in the order of the lists. It is given the index of each, its place
+/// among the images and its neighbours in its own body, itself among them.
 fn of_receivers<T: Send>(
     lists: &Lists,
     work: impl Fn(usize, u32, &[u32]) -> Option<T> + Sync,
