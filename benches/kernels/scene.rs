@@ -3,12 +3,12 @@
 use engine::contact::{ContactTable, ContactView};
 use files::input;
 use model::Case;
+use numerics::lanes::LANES;
 use particles::neighbours::MotionRecord;
 use particles::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
 };
-use numerics::lanes::LANES;
-use particles::{Asleep, Image, ParticleStore};
+use particles::{Image, Inactive, ParticleStore};
 
 /// Particles along an edge.
 const EDGE: u32 = 48;
@@ -100,7 +100,7 @@ impl Scene {
         let scratch = &mut self.scratch;
         self.sequence.build(
             scratch,
-            (COUNT, &Asleep::default()),
+            (COUNT, &Inactive::default()),
             (&[], 0),
             facts,
             |_, _| ImageState {

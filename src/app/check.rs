@@ -9,7 +9,6 @@ use super::form::Form;
 use super::plan::duration;
 use super::plot::out;
 use comm::Comm;
-use plot::{self, PlotError};
 use document::document;
 use files::input::{self, InputError};
 use files::output::{snapshot, unit_of_model};
@@ -19,6 +18,7 @@ use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, warn};
 use model::readable::{short, shown};
 use model::{Body, Case, MeasureKind, Quantity, cube};
+use plot::{self, PlotError};
 use populate;
 
 /// Check a case without running it: particles by body, memory, expected steps

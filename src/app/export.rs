@@ -7,10 +7,10 @@ use serde_json::json;
 use super::form::{Form, wrote};
 use super::which::Several;
 use desk::export::{self, ExportError, Format, Place, Wish};
-use plot::{Wanted, bodies, parse_quantity};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
 use model::readable::one_line;
+use plot::{Wanted, bodies, parse_quantity};
 
 /// Write snapshots in the formats of other programs
 ///

@@ -10,7 +10,6 @@ use serde_json::{Value, json};
 use super::form::{self, Form, wrote};
 use super::results::ResultsError;
 use super::which::Which;
-use plot::{PlotError, choose, snapshots};
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
 use files::input;
 use files::output::fragments::FragmentTable;
@@ -20,6 +19,7 @@ use files::run::say::{counted, say, seconds, warn};
 use matter::Loaded;
 use model::readable::{one_line, shown, shown_vector};
 use model::{FragmentOptions, Include};
+use plot::{PlotError, choose, snapshots};
 
 /// Tell the fragments of a run: how many, how heavy, how large, how fast
 ///

@@ -9,12 +9,12 @@ use std::path::PathBuf;
 
 use super::form::Form;
 use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
-use plot::{PlotError, Quantity};
 use desk::sweep::{self, Shot, SweepError, Values};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{say, warn};
 use laws::Law;
 use model::readable::one_line;
+use plot::{PlotError, Quantity};
 
 /// Print and plot ballistic limit equations, craters and hole diameters
 ///

@@ -6,7 +6,6 @@ use super::form::{self, Form, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use plot::{PlotError, Wanted, choose, snapshots};
 use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
 use files::input::{self, InputError};
 use files::output::h5::Content;
@@ -16,6 +15,7 @@ use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, seconds, warn};
 use model::readable::{one_line, shown};
 use model::{Case, Measure, MeasureKind};
+use plot::{PlotError, Wanted, choose, snapshots};
 
 /// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
 ///

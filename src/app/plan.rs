@@ -14,7 +14,6 @@ use clap::builder::PossibleValuesParser;
 
 use super::form::Form;
 use super::plot::out::{check_picture, save_text, write_chart};
-use plot::PlotError;
 use files::output::read_small;
 use files::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
 use files::preflight::{Costs, memory};
@@ -22,6 +21,7 @@ use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{counted, say, warn};
 use model::Case;
 use model::readable::short;
+use plot::PlotError;
 use source::Source;
 pub use table::duration;
 

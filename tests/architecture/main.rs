@@ -17,11 +17,11 @@ const PHYSICS: &str = "numerics populate material particles domain fragments loa
      measure ballistic exact sums engine";
 
 /// Rooms of physics that have no business with clocks at all (`step` times its phases).
-const TIMELESS: &str = "numerics populate material particles fragments loads contact sph measure ballistic exact sums";
+const TIMELESS: &str =
+    "numerics populate material particles fragments loads contact sph measure ballistic exact sums";
 
 /// Rooms of the step, where one thread may not go over all particles while others wait.
-const STEP: &str =
-    "domain step loads contact sph particles fragments diagnose measure sums engine";
+const STEP: &str = "domain step loads contact sph particles fragments diagnose measure sums engine";
 
 /// Files of those rooms that have no part in a step, with the reason.
 const NOT_OF_STEP: &[(&str, &str)] = &[

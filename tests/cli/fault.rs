@@ -31,10 +31,7 @@ fn only_line(ended: &Ended) -> &str {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_panic_on_one_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
     for (fault, threads, number, rank) in [
@@ -47,7 +44,8 @@ fn a_panic_on_one_rank_ends_all() {
         let ended = end(command.args(["--threads", threads]));
         assert_eq!(ended.code, Some(101), "{ended:#?}");
         let line = only_line(&ended);
-        let begin = format!("error: rank {rank}, step 20: a panic on purpose (src/files/run/fault.rs:");
+        let begin =
+            format!("error: rank {rank}, step 20: a panic on purpose (src/files/run/fault.rs:");
         assert!(line.starts_with(&begin), "{line}");
         // What runs on how many ranks, and how these share out space.
         assert_eq!(ended.stdout.lines().count(), number.min(2), "{ended:#?}");
@@ -57,10 +55,7 @@ fn a_panic_on_one_rank_ends_all() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn an_error_on_one_rank_is_that_of_all() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -88,10 +83,7 @@ fn an_error_on_one_rank_is_that_of_all() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_killed_rank_ends_all() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -106,10 +98,7 @@ fn a_killed_rank_ends_all() {
 
 /// In a step and while a checkpoint is written; the restart ends in the same bits.
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
@@ -135,10 +124,7 @@ fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
 
 /// A limit on the size of files in one rank is a disk that is full for that rank alone.
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     let place = tempfile::tempdir().unwrap();
     for rank in [0, 1] {

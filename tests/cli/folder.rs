@@ -124,10 +124,7 @@ fn what_cannot_be_read_now_or_is_of_another_version_ends_a_restart() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_folder_belongs_to_one_run_at_a_time() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");
@@ -157,10 +154,7 @@ fn a_folder_belongs_to_one_run_at_a_time() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_killed_run_is_told_from_one_that_runs() {
     let place = tempfile::tempdir().unwrap();
     let run = place.path().join("run");

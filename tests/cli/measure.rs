@@ -1,8 +1,8 @@
 //! `whipple measure` against the run that wrote the snapshots.
 
 use crate::program::{WHIPPLE, assert_same, coarse_run, command, end, ranks};
-use std::fs;
 use files::output::Sheet;
+use std::fs;
 
 const EVERY: [&str; 4] = [
     "--set",

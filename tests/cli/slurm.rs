@@ -169,10 +169,7 @@ impl Drop for Cluster {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
     let place = tempfile::tempdir().unwrap();
     let Some(cluster) = Cluster::start(&place.path().join("slurm")) else {
@@ -226,10 +223,7 @@ fn a_chain_of_jobs_goes_on_until_the_end_with_the_bits_of_one_run() {
 
 /// The script that `whipple plan` writes asks SLURM for its layout, each time that it submits itself.
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_planned_job_submits_itself() {
     let place = tempfile::tempdir().unwrap();
     let place = place.path();

@@ -65,10 +65,7 @@ fn reference(place: &Path) -> PathBuf {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn signals_stop_softly() {
     let place = folder();
     let reference = reference(place.path());
@@ -94,10 +91,7 @@ fn signals_stop_softly() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
     let place = folder();
     let alone = |run: &Path| {
@@ -121,10 +115,7 @@ fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_file_and_the_clock_stop_softly() {
     let place = folder();
     let reference = reference(place.path());
@@ -151,10 +142,7 @@ fn a_file_and_the_clock_stop_softly() {
 }
 
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn the_launch_script_turns_signals_into_soft_stops() {
     let place = folder();
     for name in ["TERM", "INT", "USR1"] {
@@ -202,10 +190,7 @@ fn until_stops_at_its_time_and_is_no_failure() {
 /// A file `stop` from before a restart is of the earlier run; one that comes while it starts
 /// counts.
 #[test]
-#[cfg_attr(
-    not(debug_assertions),
-    ignore = "needs debug assertions"
-)]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_stop_file_that_comes_while_a_run_starts_is_not_lost() {
     let place = folder();
     let run = place.path().join("run");

@@ -1,14 +1,13 @@
 //! What runs must have in common to the last bit, and a case with all there is.
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 
 use comm::Comm;
-use material::{AfterSpall, Spall};
-use model::{
-    Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm,
-};
-use particles::{FieldInfo, HaloPhase, Life, rows as fields};
 use engine::step::Simulation;
+use material::{AfterSpall, Spall};
+use model::{Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm};
+use particles::{FieldInfo, HaloPhase, Life, rows as fields};
 
 use super::sphere_on_plate;
 
@@ -21,7 +20,7 @@ pub fn start(case: Case) -> Simulation {
 pub fn advance(simulation: &mut Simulation, steps: usize) {
     for _ in 0..steps {
         simulation.advance(&Comm::solo()).unwrap();
-        simulation.diagnose(&Comm::solo());
+        measurements::diagnose(simulation, &Comm::solo());
     }
 }
 

@@ -62,10 +62,7 @@ pub fn command(program: &str) -> Command {
 #[track_caller]
 pub fn strike<'a>(command: &'a mut Command, fault: &str) -> &'a mut Command {
     let built = cfg!(debug_assertions);
-    assert!(
-        built,
-        "the program is built without debug assertions"
-    );
+    assert!(built, "the program is built without debug assertions");
     command.env("WHIPPLE_TEST_FAULT", fault)
 }
 

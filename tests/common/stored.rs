@@ -1,11 +1,11 @@
 //! A case, and particles of files, whose every number tells where it belongs.
 
 use comm::Comm;
+use files::output::snapshot;
 use model::{
     Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
     OutputOptions, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
 };
-use files::output::snapshot;
 use particles::{FIELDS, ParticleStore};
 
 use crate::sentinel::{id, mix, sentinel};

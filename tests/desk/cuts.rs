@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use resvg::tiny_skia::Pixmap;
 use plot::{Pictures, Request, Sequence, Source};
+use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, impact, plot, write};
 

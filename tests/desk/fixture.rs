@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use app::plot::{self as command, PlotArgs};
 use clap::Parser;
 use hdf5::types::{FixedAscii, FixedUnicode};
-use app::plot::{self as command, PlotArgs};
 
 /// Particle spacing of the synthetic impact (m).
 pub const SPACING: f64 = 2e-5;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use resvg::tiny_skia::Pixmap;
 use files::output::h5::read::SnapshotFile;
+use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{self, Case, Particles, impact, plot, write};
 

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use crate::shocks::Shocks;
-use resvg::tiny_skia::Pixmap;
 use exact::finite_strain::Medium;
 use material::LinearForm;
 use plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
+use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, plot, write};
 

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use resvg::tiny_skia::Pixmap;
 use plot::{RadiographRequest, Radiographs, Source};
+use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, SPACING, impact, plot, write};
 

@@ -1,6 +1,7 @@
 //! What must change no bit: threads, the order in memory, a stop, the instruction set, and what is
 //! not state. Ranks are in `mpi/engine.rs` and, by the whole program, in `same_bits.rs`.
 
+use engine::step::measurements;
 use std::process::Command;
 
 use crate::bridge;
@@ -9,11 +10,11 @@ use crate::common::outcome::{
 };
 use crate::common::random::Random;
 use comm::Comm;
+use engine::step::Simulation;
 use files::input;
 use model::Case;
 use numerics::dispatch::available;
 use particles::SCRATCH_WORDS;
-use engine::step::Simulation;
 
 const STEPS: usize = 40;
 
@@ -39,7 +40,7 @@ fn reference(case: fn() -> Case) -> Outcome {
 fn only_state_carries_over_a_step() {
     for case in CASES {
         let mut poisoned = start(case());
-        poisoned.poison = true;
+        poisoned.step_control.poison = true;
         advance(&mut poisoned, STEPS);
         assert_same(&Outcome::of(&poisoned), &reference(case));
     }
@@ -69,7 +70,7 @@ fn sparing_what_is_calm_changes_no_bit() {
     ] {
         let [spared, whole] = [true, false].map(|spare| {
             let mut simulation = Simulation::start(case(), &Comm::solo()).unwrap();
-            simulation.lists.spare_quiescent = spare;
+            simulation.search.lists.spare_quiescent = spare;
             advance(&mut simulation, 25);
             simulation
         });
@@ -83,7 +84,7 @@ fn what_no_wave_has_reached_rests() {
     let case = quarter(&[WIDE]);
     let start = || Simulation::start(case.clone(), &Comm::solo()).unwrap();
     let (mut spared, mut whole) = (start(), start());
-    whole.lists.spare_quiescent = false;
+    whole.search.lists.spare_quiescent = false;
     for simulation in [&mut spared, &mut whole] {
         // Not a multiple of ten, where parts of bodies are told apart.
         advance(simulation, 24);
@@ -97,7 +98,7 @@ fn what_no_wave_has_reached_rests() {
     let far: Vec<usize> = far.collect();
     assert!(far.len() > particles.owned() / 4, "{}", far.len());
     assert!(far.iter().all(|&i| particles.velocity[i] == [0.0; 3]));
-    let [few, all] = [&spared, &whole].map(|simulation| simulation.lists.entries());
+    let [few, all] = [&spared, &whole].map(|simulation| simulation.search.lists.entries());
     assert!(4 * few < 3 * all, "{few} of {all}");
     assert_same(&Outcome::of(&spared), &Outcome::of(&whole));
 }
@@ -109,14 +110,14 @@ fn what_sleeps_changes_no_bit() {
     let case = quarter(&[WIDE, "domain.balance_every=7"]);
     let start = || Simulation::start(case.clone(), &Comm::solo()).unwrap();
     let (mut spared, mut shaken, mut whole) = (start(), start(), start());
-    whole.lists.spare_quiescent = false;
+    whole.search.lists.spare_quiescent = false;
     let mut random = Random::new(3);
     let mut asleep = Vec::new();
     for step in 0..75 {
         advance(&mut spared, 1);
         advance(&mut shaken, 1);
         advance(&mut whole, 1);
-        asleep.push(spared.asleep());
+        asleep.push(spared.inactive());
         if step % 13 == 5 {
             let count = u32::try_from(shaken.particles.owned()).unwrap();
             let mut order: Vec<u32> = (0..count).collect();
@@ -125,7 +126,7 @@ fn what_sleeps_changes_no_bit() {
             shaken.particles.keep(&order, &mut scratch);
         }
     }
-    assert_eq!(whole.asleep(), 0);
+    assert_eq!(whole.inactive(), 0);
     let (most, last) = (asleep.iter().max().unwrap(), asleep.last().unwrap());
     let owned = spared.particles.owned();
     assert!(15 * most > owned, "{most} of {owned}");
@@ -141,19 +142,19 @@ fn what_sleeps_changes_no_bit() {
 fn what_sleeps_is_told_its_parts() {
     let solo = Comm::solo();
     let (mut spared, mut whole) = (start(bridge::case()), start(bridge::case()));
-    whole.lists.spare_quiescent = false;
+    whole.search.lists.spare_quiescent = false;
     for step in 0..bridge::STEPS {
         for simulation in [&mut spared, &mut whole] {
             bridge::advance(simulation, &solo);
         }
-        let (asleep, owned) = (spared.asleep(), spared.particles.owned());
+        let (asleep, owned) = (spared.inactive(), spared.particles.owned());
         // The smaller block does not, once it is one.
         let sleeps = (2..=30).contains(&step);
         assert!(!sleeps || 8 * asleep > owned, "{step}: {asleep} of {owned}");
         let figures = [&mut spared, &mut whole].map(|simulation| {
-            simulation.diagnose(&solo);
+            measurements::diagnose(simulation, &solo);
             let totals = simulation.state.totals;
-            format!("{totals:?} {:?}", simulation.measure_bodies(&solo))
+            format!("{totals:?} {:?}", measurements::bodies(simulation, &solo))
         });
         assert_eq!(figures[0], figures[1], "{step}");
         assert_same(&Outcome::of(&spared), &Outcome::of(&whole));

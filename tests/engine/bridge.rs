@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use comm::Comm;
+use engine::step::Simulation;
 use files::input;
 use model::Case;
-use engine::step::Simulation;
 
 pub const STEPS: usize = 60;
 

@@ -2,11 +2,11 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use particles::Mirrors;
 use model::{Axis, SymmetryPlane};
+use particles::Mirrors;
 use particles::neighbours::MotionRecord;
 use particles::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
-use particles::{Asleep, Image};
+use particles::{Image, Inactive};
 
 use crate::common::random::Random;
 
@@ -161,8 +161,8 @@ impl Cloud {
             .collect();
         let mut scratch = vec![0; Sequence::SCRATCH_WORDS * emitted.len()];
         let others = (&others[..], others.len() / 3);
-        let asleep = Asleep::default();
-        let owned = (self.owned, &asleep);
+        let inactive = Inactive::default();
+        let owned = (self.owned, &inactive);
         sequence.build(&mut scratch, owned, others, facts, |place, image| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
             ImageState {

@@ -4,8 +4,8 @@
 use crate::world::{SPACING, World, case_of, some_body};
 use engine::contact::ContactForce;
 use material::Material;
-use particles::neighbours::MotionRecord;
 use numerics::vector::{dot, norm};
+use particles::neighbours::MotionRecord;
 
 /// What becomes of two particles that meet.
 struct Bounce {

@@ -8,10 +8,11 @@ use crate::common::virtual_ranks::on_each;
 use crate::corrected_world::{Matrix, World};
 use crate::linear_field::free_block;
 use engine::diagnose::Worst;
-use particles::Mirrors;
+use engine::step::Simulation;
+use engine::step::measurements;
 use model::{Axis, SphForm, Vec3};
 use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use engine::step::Simulation;
+use particles::Mirrors;
 
 fn lane(values: &[numerics::lanes::F64x8; 6], k: usize) -> Matrix {
     let [xx, yy, zz, xy, xz, yz] = values.map(|v| v.0[k]);
@@ -349,7 +350,7 @@ fn angular_momentum_is_explained() {
                 particles.velocity[i] = (turned + Vec3::from(shaken)).into();
             }
             let before = simulation.state.angular_impulse;
-            simulation.diagnose(comm);
+            measurements::diagnose(&mut simulation, comm);
             simulation.state.initial = simulation.state.totals;
             simulation.state.angular_momentum_scale = Some(1e-300);
             simulation.state.worst = Worst::default();
@@ -357,7 +358,7 @@ fn angular_momentum_is_explained() {
             for _ in 0..50 {
                 simulation.advance(comm).unwrap();
             }
-            simulation.diagnose(comm);
+            measurements::diagnose(&mut simulation, comm);
             let state = &simulation.state;
             let scale = (state.totals.angular_momentum.iter())
                 .chain(&state.angular_impulse)

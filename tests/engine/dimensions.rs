@@ -4,10 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, every_option, start};
 use crate::common::{SPACING, body, case, make_elastic, planes};
-use model::{
-    Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3,
-};
 use engine::step::Simulation;
+use model::{Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3};
 
 /// What the conventional sums give a linear field on a cubic lattice at h = 1.3 Δp (see `engine_sph`).
 const FACTORS: [f64; 3] = [

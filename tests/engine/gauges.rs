@@ -4,8 +4,9 @@ use crate::common::outcome::start;
 use crate::common::{SPACING, ball, case, planes, sphere_on_plate};
 use comm::Comm;
 use engine::measure::GaugeRow;
-use model::{Axis, Cadence, Case, Gauge, Vec3, Witness};
 use engine::step::Simulation;
+use engine::step::measurements;
+use model::{Axis, Cadence, Case, Gauge, Vec3, Witness};
 
 fn gauge(at: [f64; 3], fields: &[&str]) -> Gauge {
     Gauge {
@@ -20,7 +21,7 @@ fn gauge(at: [f64; 3], fields: &[&str]) -> Gauge {
 }
 
 fn read(simulation: &mut Simulation) -> Vec<GaugeRow> {
-    simulation.read_gauges(&Comm::solo(), |_| true)
+    measurements::read_gauges(simulation, &Comm::solo(), |_| true)
 }
 
 fn step(simulation: &mut Simulation, steps: usize) {
@@ -202,11 +203,11 @@ fn a_witness_plane_counts_what_passes() {
         step(&mut simulation, 1);
         // As often as rows and checkpoints ask.
         if simulation.state.step.is_multiple_of(3) {
-            seen.extend(simulation.join_crossings(&comm));
+            seen.extend(measurements::join_crossings(&mut simulation, &comm));
         }
     }
-    seen.extend(simulation.join_crossings(&comm));
-    let passed = simulation.passed();
+    seen.extend(measurements::join_crossings(&mut simulation, &comm));
+    let passed = measurements::passed(&simulation);
     let count = simulation.particles.owned() as u64;
     let totals = &simulation.state.totals;
     assert_eq!(passed.len(), 6);

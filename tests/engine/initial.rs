@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use crate::physics_support::{inline, run_to, start};
 use comm::Comm;
+use engine::step::Simulation;
+use files::preflight::{approaches, beginning, warnings};
 use model::{Case, Vec3};
 use populate;
-use files::preflight::{approaches, beginning, warnings};
-use engine::step::Simulation;
 
 /// A copper block of 6 × 5 × 4 mm about (1, 2, 3) mm.
 fn block(spacing: &str, more: &str) -> Case {

@@ -4,8 +4,9 @@
 use crate::common::outcome::{advance, start};
 use crate::common::{SPACING, ball, case, make_elastic, planes, sphere_on_plate};
 use comm::Comm;
-use model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
 use engine::step::StepError;
+use engine::step::measurements;
+use model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
 
 /// What is above and below some distances (spacings) from the origin.
 fn region(above: [f64; 3], below: [f64; 3]) -> Region {
@@ -85,7 +86,7 @@ fn what_stays_is_not_kicked() {
             );
             assert_eq!(particles.density[i].to_bits(), 2785.0_f64.to_bits());
         }
-        simulation.diagnose(&Comm::solo());
+        measurements::diagnose(&mut simulation, &Comm::solo());
     };
     assert!(cuts >= 3, "{cuts}");
     assert!(matches!(error, StepError::NothingLeft { .. }), "{error}");

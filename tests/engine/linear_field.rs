@@ -1,8 +1,8 @@
 //! Bodies that move as a linear field.
 
-use nalgebra::Matrix3;
 use material::{Eos, Linear, LinearForm, Strength};
 use model::{Axis, Case, Shape, SphForm, Vec3};
+use nalgebra::Matrix3;
 
 use crate::common::{SPACING, body, case, make_elastic, planes};
 

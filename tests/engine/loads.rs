@@ -3,8 +3,8 @@
 use crate::physics_support::bars::{BAR_MATERIALS, STEEL_SPEED};
 use crate::physics_support::{inline, run_to, run_with, sorted_by, start};
 use engine::contact::ContactTable;
-use model::Case;
 use engine::step::{Reason, Simulation};
+use model::Case;
 
 /// ρ c v of the bar's step (Pa).
 const PLATEAU: f64 = 0.004_584_9e11;

@@ -1,20 +1,21 @@
 //! What a run measures of itself against what its particles say.
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, start};
 use crate::common::sphere_on_plate;
 use comm::Comm;
 use engine::measure::BodyFigures;
-use model::Case;
 use engine::step::Simulation;
+use model::Case;
 
 fn impact(quarter: bool) -> Case {
     sphere_on_plate(1e-4, 3000.0, quarter, 1.0)
 }
 
 fn measure(simulation: &mut Simulation) -> Vec<BodyFigures> {
-    simulation.measure_bodies(&Comm::solo())
+    measurements::bodies(simulation, &Comm::solo())
 }
 
 fn close(a: f64, b: f64, scale: f64, what: &str) {

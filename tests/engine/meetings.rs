@@ -4,11 +4,10 @@
 use crate::common::outcome::start;
 use crate::common::{SPACING, ball, case, make_elastic};
 use comm::Comm;
-use material::{Elastic, Eos, Linear, LinearForm, Strength};
-use model::{
-    Case, Motion, Region, Resistance, RigidSurface, Spin, SurfaceShape, VelocityLoad,
-};
+use engine::step::measurements;
 use engine::step::{Reason, Simulation};
+use material::{Elastic, Eos, Linear, LinearForm, Strength};
+use model::{Case, Motion, Region, Resistance, RigidSurface, Spin, SurfaceShape, VelocityLoad};
 
 /// Speed of all that flies here (m/s), some two hundred spacings in a step by sound.
 const SPEED: f64 = 4000.0;
@@ -185,7 +184,7 @@ fn sums_are_of_pairs_that_have_met() {
     for _ in 0..3 {
         simulation.advance(&Comm::solo()).expect("a step");
     }
-    simulation.join_extremes(&Comm::solo());
+    measurements::join_extremes(&mut simulation, &Comm::solo());
     let met = simulation
         .state
         .pairs

@@ -6,16 +6,17 @@
 )]
 #![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, start};
 use crate::common::sentinel::mix;
 use crate::common::{SPACING, ball, case, make_elastic, planes};
 use comm::Comm;
-use particles::Mirrors;
-use model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
-use particles::{FIELDS, FieldInfo, ParticleStore};
 use engine::step::Simulation;
+use model::{Axis, ContactMode, Overlap, Potential, SmoothingLength, SymmetryPlane};
+use particles::Mirrors;
+use particles::{FIELDS, FieldInfo, ParticleStore};
 
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
 /// particles of a reduced model and the same ones of the whole.
@@ -159,7 +160,7 @@ fn particles_that_cross_a_plane_go_on_as_their_images() {
         simulation
     };
     let (mut reduced, mut whole) = (model(&[Axis::X]), model(&[]));
-    reduced.diagnose(&Comm::solo());
+    measurements::diagnose(&mut reduced, &Comm::solo());
     let before = reduced.state.totals;
     let whole_slot = |whole: &Simulation| -> BTreeMap<u64, usize> {
         (0..whole.particles.owned())

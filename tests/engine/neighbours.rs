@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use crate::cloud::{Cloud, Found, Recipe};
 use crate::common::random::Random;
-use proptest::prelude::*;
 use model::ContactClass;
-use particles::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
 use numerics::ordered::ordered;
 use particles::Image;
+use particles::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
+use proptest::prelude::*;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
     (1_usize..=3)

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use crate::common::process::in_its_own;
 use crate::project;
 use comm::Comm;
-use files::input;
 use engine::step::Simulation;
+use files::input;
 
 /// Counts allocations of all threads, once it is told to.
 struct Counting;

@@ -12,16 +12,7 @@ use crate::common::random::Random;
 use crate::common::virtual_ranks::on_each;
 use crate::common::{ball, body, case, make_elastic};
 use crate::linear_field::free_block;
-use nalgebra::Matrix3;
 use comm::Comm;
-use particles::Mirrors;
-use model::{
-    Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3,
-};
-use particles::neighbours::Chunk;
-use numerics::dispatch::available;
-use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use numerics::lanes::LANES;
 use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use engine::sph::neighbourhood::Sources;
 use engine::sph::normalised::{
@@ -29,6 +20,13 @@ use engine::sph::normalised::{
 };
 use engine::sph::terms::{NORMALISED, PairTerms};
 use engine::step::Simulation;
+use model::{Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3};
+use nalgebra::Matrix3;
+use numerics::dispatch::available;
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use numerics::lanes::LANES;
+use particles::Mirrors;
+use particles::neighbours::Chunk;
 
 /// A cloud with all that the sums read.
 struct World {

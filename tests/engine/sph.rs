@@ -8,15 +8,15 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
-use particles::neighbours::Chunk;
-use particles::neighbours::MotionRecord;
-use numerics::dispatch::{Instructions, available};
-use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use numerics::lanes::{F64x8, LANES};
 use engine::sph::gradient::VelocityGradient;
 use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use engine::sph::neighbourhood::Sources;
 use engine::sph::terms::PairTerms;
+use numerics::dispatch::{Instructions, available};
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use numerics::lanes::{F64x8, LANES};
+use particles::neighbours::Chunk;
+use particles::neighbours::MotionRecord;
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
@@ -117,10 +117,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
             let stress = StressRecord {
                 density,
                 sound_speed,
-                stress_over_density2: particles::Mirrors::reflect_symmetric(
-                    &stress,
-                    image.code(),
-                ),
+                stress_over_density2: particles::Mirrors::reflect_symmetric(&stress, image.code()),
             };
             (motion, stress)
         })

@@ -7,16 +7,15 @@
 )]
 #![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 
 use crate::common::outcome::{advance, everything, start};
 use crate::common::{SPACING, ball, body, case, make_elastic, planes};
 use comm::Comm;
-use material::{AfterSpall, Spall};
-use model::{
-    Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3,
-};
 use engine::step::{Reason, Simulation};
+use material::{AfterSpall, Spall};
+use model::{Axis, Case, ContactMode, Overlap, Potential, Shape, SmoothingLength, SphForm, Vec3};
 
 /// A body alone, however fast, is at rest in its own frame: no force, no stress, the same velocity
 /// to the last bit.
@@ -102,7 +101,7 @@ fn drift_of_spin(form: SphForm) -> [f64; 2] {
         let (mut simulation, spin) = spinning(form, radius, SPEED);
         let before = angular_momentum(&simulation);
         let totals = |s: &mut Simulation| {
-            s.diagnose(&Comm::solo());
+            measurements::diagnose(s, &Comm::solo());
             s.state.totals
         };
         let first = totals(&mut simulation);

@@ -5,10 +5,10 @@ use crate::common::random::Random;
 use crate::common::virtual_ranks::on_each;
 use crate::common::{ball, body, case, make_elastic, planes, sphere_on_plate};
 use crate::linear_field::free_block;
-use nalgebra::Matrix3;
 use comm::Comm;
-use model::{Axis, Case, Shape, SmoothingLength, SphForm, Vec3};
 use engine::step::Simulation;
+use model::{Axis, Case, Shape, SmoothingLength, SphForm, Vec3};
+use nalgebra::Matrix3;
 
 const SPACING: f64 = 1e-4;
 

@@ -3,12 +3,6 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
-use particles::Mirrors;
-use particles::neighbours::Chunk;
-use particles::neighbours::MotionRecord;
-use numerics::dispatch::{Instructions, available};
-use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
-use numerics::lanes::LANES;
 use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use engine::sph::neighbourhood::Sources;
 use engine::sph::terms::artificial_stress::repulsion;
@@ -16,6 +10,12 @@ use engine::sph::terms::balsara::limiter;
 use engine::sph::terms::{
     ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH,
 };
+use numerics::dispatch::{Instructions, available};
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
+use numerics::lanes::LANES;
+use particles::Mirrors;
+use particles::neighbours::Chunk;
+use particles::neighbours::MotionRecord;
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,

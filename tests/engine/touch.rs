@@ -4,11 +4,11 @@
 use crate::common::{body, case, sphere_on_plate};
 use comm::Comm;
 use engine::contact::overlap::{self, OFFSET_LIMIT, initial_offset};
+use engine::step::Simulation;
 use model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
 use numerics::vector::norm;
 use particles::ParticleStore;
 use populate;
-use engine::step::Simulation;
 
 const SPACING: f64 = 1e-5;
 

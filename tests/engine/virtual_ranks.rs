@@ -1,6 +1,7 @@
 //! Virtual ranks: their messages and collective calls, their clock, and the step on up to a thousand
 //! of them.
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 use std::panic::catch_unwind;
 use std::thread;
@@ -13,9 +14,9 @@ use crate::common::sentinel::mix;
 use crate::common::virtual_ranks::on_virtual_ranks;
 use crate::physics_support::{ready, run_to, start};
 use comm::{Comm, Computing, Exchange, Joint, Machine, virtual_ranks, waited};
+use engine::step::{Phase, Simulation, Timers};
 use files::input;
 use model::{Axis, Case};
-use engine::step::{Phase, Simulation, Timers};
 
 /// Numbers of ranks: one, few, and one that is no power of two, many.
 const RANKS: [usize; 6] = [1, 2, 3, 7, 64, 1000];
@@ -331,11 +332,11 @@ fn impact(spacing: &str, levels: usize, balance_every: u64) -> Case {
 }
 
 fn advance(comm: &Comm, simulation: &mut Simulation, steps: usize) {
-    simulation.poison = true;
+    simulation.step_control.poison = true;
     for _ in 0..steps {
         simulation.advance(comm).unwrap();
     }
-    simulation.diagnose(comm);
+    measurements::diagnose(simulation, comm);
 }
 
 /// What so many virtual ranks make of a start in so many steps, joined.
@@ -477,7 +478,7 @@ fn levels_that_change_on_the_way_change_no_bit() {
 fn what_sleeps_on_ranks_is_told_its_parts() {
     let solo = Comm::solo();
     let mut alone = Simulation::start(bridge::case(), &solo).unwrap();
-    alone.lists.spare_quiescent = false;
+    alone.search.lists.spare_quiescent = false;
     for _ in 0..bridge::STEPS {
         bridge::advance(&mut alone, &solo);
     }
@@ -488,10 +489,10 @@ fn what_sleeps_on_ranks_is_told_its_parts() {
             let mut simulation = Simulation::start(bridge::case(), comm).unwrap();
             let (mut asleep, mut grown) = (0, 0);
             for _ in 0..bridge::STEPS {
-                let before = (simulation.asleep(), simulation.particles.owned());
+                let before = (simulation.inactive(), simulation.particles.owned());
                 bridge::advance(&mut simulation, comm);
                 grown += usize::from(before.0 > 0 && before.1 < simulation.particles.owned());
-                asleep = asleep.max(simulation.asleep());
+                asleep = asleep.max(simulation.inactive());
             }
             ((asleep, grown), Outcome::of(&simulation))
         });

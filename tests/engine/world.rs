@@ -6,8 +6,8 @@ use material::library;
 use model::{
     Body, Case, ContactClass, ContactMode, Overlap, Potential, PotentialRange, Shape, Vec3,
 };
-use particles::neighbours::MotionRecord;
 use numerics::kernel::Kernel;
+use particles::neighbours::MotionRecord;
 use particles::{Image, ParticleStore};
 use populate;
 

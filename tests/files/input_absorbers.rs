@@ -1,8 +1,8 @@
 //! Absorbing zones as they are typed; more mistakes stand in the table of bad inputs.
 
 use files::input::parse;
-use model::{Absorber, Axis, Case, OuterFace};
 use files::preflight::{approaches, warnings};
+use model::{Absorber, Axis, Case, OuterFace};
 
 /// A can about z, a quarter of a block and a zone.
 fn case(zone: &str) -> Result<Case, String> {

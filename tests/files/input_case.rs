@@ -1,12 +1,12 @@
 //! The ready cases, overrides, and the resolved text.
 
 use files::input::{load, output_and_run_only, parse};
+use files::preflight::{approaches, warnings};
 use material::{Strength, library};
 use model::{
     Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
 };
 use populate;
-use files::preflight::{approaches, warnings};
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
     let path = crate::project::root().join(format!("inputs/{name}/case.toml"));

@@ -8,9 +8,9 @@ use crate::surfaces::{
     Triangles, ball, cuboid, rounded, torus, turned, volume, write_obj, write_stl,
 };
 use files::input::load;
+use files::preflight::{approaches, warnings};
 use model::{Axis, Case, Shape, SymmetryPlane, Vec3};
 use populate;
-use files::preflight::{approaches, warnings};
 
 /// A case in a folder of a body at .1 mm.
 fn written(folder: &Path, body: &str, more: &str) -> std::path::PathBuf {

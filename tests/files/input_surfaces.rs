@@ -1,11 +1,11 @@
 //! Mistakes in rigid surfaces and their files: one clear message each; and how files are kept.
 
 use comm::Comm;
+use engine::step::Simulation;
 use files::input::{load, parse};
+use files::preflight::{approaches, warnings};
 use model::Case;
 use populate::{bounds, smallest_gap};
-use files::preflight::{approaches, warnings};
-use engine::step::Simulation;
 
 const GOOD: &str = r#"dimension = 3
 spacing = "1 mm"

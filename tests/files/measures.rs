@@ -2,14 +2,15 @@
 
 use crate::common::outcome::start;
 use crate::common::{body, case};
-use std::f64::consts::PI;
 use comm::Comm;
 use engine::measure::{Findings, Told};
+use engine::step::Simulation;
+use engine::step::measurements;
 use model::{
     Axis, Bar, Case, Debris, FrontLine, Include, Measure, MeasureKind, Shape, Slab, SymmetryPlane,
     Vec3, Zone, ZonePlace, rotation,
 };
-use engine::step::Simulation;
+use std::f64::consts::PI;
 
 /// Particle spacing (m).
 const D: f64 = 1e-4;
@@ -129,7 +130,7 @@ fn moved() -> (nalgebra::Matrix3<f64>, Vec3) {
 }
 
 fn measure(simulation: &mut Simulation) -> Vec<Findings> {
-    simulation.measure(&Comm::solo())
+    measurements::findings(simulation, &Comm::solo())
 }
 
 /// A plate of 40 × 40 × 4 spacings with all that is made of it.

@@ -3,8 +3,8 @@
 
 use crate::common::sentinel::{id, mix};
 use comm::{Comm, Machine, virtual_ranks};
-use model::Sharing;
 use files::output::{Block, Rows};
+use model::Sharing;
 
 /// Numbers of ranks: one group, primes, squares, many.
 const RANKS: [usize; 7] = [1, 2, 3, 7, 16, 64, 300];

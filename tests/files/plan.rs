@@ -2,9 +2,9 @@
 
 use crate::common::random::Random;
 use comm::Comm;
-use particles::{Mirrors};
 use engine::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds, Sent, Tally, tally};
 use model::{Axis, SymmetryPlane};
+use particles::Mirrors;
 
 /// Whether a place is within a range (m) of a box.
 fn is_near(place: [f64; 3], [lower, upper]: [[f64; 3]; 2], range: f64) -> bool {

@@ -16,11 +16,11 @@ use app::fragments::{self, FragmentsArgs};
 use app::plot::PlotArgs;
 use app::{compare::compare, info::describe, plot};
 use comm::Comm;
+use engine::step::{RunState, Simulation};
 use files::input::parse;
 use files::output::binary_table::{self, BinaryTable, Cells};
 use files::output::{Column, Rows, checkpoint, snapshot};
 use particles::ParticleStore;
-use engine::step::{RunState, Simulation};
 
 const CASE: &str = r#"
 dimension = 2

@@ -2,11 +2,11 @@
 #![allow(clippy::cast_precision_loss, reason = "counts")]
 
 use crate::support::{batch, material, step};
-use nalgebra::Matrix3;
 use material::{
     Crosses, Effect, Elastic, Eos, Flaws, GradyKipp, LANES, Linear, LinearForm, Material,
     PointBatch, Strength,
 };
+use nalgebra::Matrix3;
 
 const RHO: f64 = 2700.0;
 

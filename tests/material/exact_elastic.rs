@@ -6,8 +6,8 @@
 use crate::exact::elastic::{Bar, End, Joint, Row, Waves};
 use crate::exact::shocks::{Shocks, impact};
 use crate::exact::{ALUMINIUM, STEEL, medium};
-use proptest::prelude::*;
 use material::LinearForm;
+use proptest::prelude::*;
 
 fn bar(material: [f64; 3], left: f64, length: f64, velocity: f64) -> Bar {
     let medium = medium(material, LinearForm::Logarithmic);

@@ -2,8 +2,8 @@
 
 #![allow(clippy::float_cmp)] // the sums are exact
 
-use proptest::prelude::*;
 use numerics::exact_sum::{ExactSum, LIMBS};
+use proptest::prelude::*;
 use xsum::{Xsum, XsumLarge, XsumSmall};
 
 fn sum_of(terms: &[f64]) -> ExactSum {

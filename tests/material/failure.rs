@@ -4,12 +4,12 @@
 #![allow(clippy::cast_precision_loss, reason = "counts")]
 
 use crate::support::{batch, equivalent, material, step, stress};
-use nalgebra::Matrix3;
 use material::{
     AfterSpall, Effect, Elastic, Eos, JohnsonCookFailure, LANES, Linear, LinearForm, Material,
     Molten, PlasticStrain, PrincipalStress, RateForm, Spall, Strength, Thermal, ThermalConstants,
     VonMises,
 };
+use nalgebra::Matrix3;
 
 const RHO: f64 = 2700.0;
 const K: f64 = 75e9;

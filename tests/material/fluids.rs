@@ -1,8 +1,8 @@
 //! Tait, Tillotson and gas: closed forms, joins of the branches, derivatives; Newtonian viscosity.
 
 use crate::support::{batch, equations_of_state, material, step, stress, tillotson};
-use nalgebra::Matrix3;
 use material::{Eos, IdealGas, Strength, Tait, Viscous};
+use nalgebra::Matrix3;
 
 #[test]
 fn derivatives_are_those_of_the_pressure() {

@@ -2,11 +2,11 @@
 //! integration of its own, melting, temperature.
 
 use crate::support::{aluminium, batch, equivalent, material, set_gradient, step, stress};
-use nalgebra::{Matrix3, Vector3};
 use material::{
     AfterSpall, Eos, JohnsonCook, LANES, Material, Spall, SteinbergGuinan, Strength, Thermal,
     ThermalConstants,
 };
+use nalgebra::{Matrix3, Vector3};
 
 const RHO: f64 = 2785.0;
 const CONSTANTS: ThermalConstants = ThermalConstants {

@@ -1,8 +1,8 @@
 //! Neo-Hookean rubber: exact solutions, closed cycles, objectivity.
 
 use crate::support::{batch, material, set_gradient, step, stress};
-use nalgebra::{Matrix3, Rotation3, Vector3};
 use material::{Eos, LANES, Linear, LinearForm, Material, NeoHookean, Strength};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const RHO: f64 = 1010.0;
 const C0: f64 = 852.0;

@@ -2,11 +2,11 @@
 #![allow(clippy::many_single_char_names, reason = "formulas as on paper")]
 
 use crate::support::{batch, equivalent, material, set_gradient, step};
-use nalgebra::Matrix3;
 use material::{
     AfterSpall, Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Spall, Strength,
     Value, library,
 };
+use nalgebra::Matrix3;
 
 const RHO: f64 = 2700.0;
 const K: f64 = 75e9;

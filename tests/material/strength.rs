@@ -2,10 +2,10 @@
 
 #![allow(clippy::float_cmp)] // where nothing may change, not a bit does
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
 use material::{
     Elastic, Eos, Failure, LANES, Linear, LinearForm, Material, PointBatch, Strength, VonMises,
 };
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const G: f64 = 28.6e9;
 

@@ -1,10 +1,10 @@
 //! Batches of one state in all lanes, for tests at a point.
 
-use nalgebra::Matrix3;
 use material::{
     Eos, Failure, IdealGas, LANES, Linear, LinearForm, Material, MieGruneisen, PointBatch,
     Strength, Tait, Tillotson,
 };
+use nalgebra::Matrix3;
 
 /// A material at rest, without spall or heat.
 #[allow(dead_code)] // not by every test

@@ -4,9 +4,9 @@
 use crate::common::outcome::CASES;
 use crate::ranks::on_each;
 use comm::Comm;
+use engine::step::Simulation;
 use model::Case;
 use numerics::alone::visited;
-use engine::step::Simulation;
 
 /// Steps of each case: balances, searches for parts and the order of the store come in them.
 const STEPS: u64 = 22;

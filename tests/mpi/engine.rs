@@ -1,6 +1,7 @@
 //! Messages, migration, halo and balance between real ranks, against what every rank can work out
 //! alone from the list of all particles.
 
+use engine::step::measurements;
 use std::collections::{BTreeMap, BTreeSet};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -10,13 +11,13 @@ use crate::common::random::Random;
 use crate::common::sentinel::{id, mix, sentinel};
 use crate::ranks::on_each;
 use comm::{Comm, Exchange, Joint, waited};
-use particles::{Mirrors};
 use engine::domain::{Balance, Decomposition, Halo, Migration, NestedSlabs, RankSpeeds, Reaches};
-use model::{Axis, Overlap, SelfContact, SymmetryPlane};
-use particles::{
-    Asleep, FIELDS, FieldInfo, HaloPhase, Image, ParticleStore, SCRATCH_WORDS, Select,
-};
 use engine::step::{Simulation, Timers};
+use model::{Axis, Overlap, SelfContact, SymmetryPlane};
+use particles::Mirrors;
+use particles::{
+    ActiveMut, FIELDS, FieldInfo, HaloPhase, Image, Inactive, ParticleStore, SCRATCH_WORDS, Select,
+};
 
 /// Particles of the tests, spread over a box of this many units.
 const TOTAL: u64 = 400;
@@ -294,10 +295,16 @@ fn exchange_halos(comm: &Comm) {
                     slabs: &slabs,
                     farthest,
                 };
-                let awake = Asleep::default();
-                halo.post_motion(comm, reaches, (&mut particles, &awake), |particles, i| {
-                    reach(numbers[&particles.id[i]])
-                });
+                let awake = Inactive::default();
+                halo.post_motion(
+                    comm,
+                    reaches,
+                    ActiveMut {
+                        particles: &mut particles,
+                        inactive: &awake,
+                    },
+                    |particles, i| reach(numbers[&particles.id[i]]),
+                );
                 halo.finish_motion(&mut particles);
                 let needed = needed(comm, &slabs, &mirrors, round, reach);
                 check_halo(comm, &particles, &halo, &needed, round);
@@ -613,11 +620,11 @@ fn step_together(comm: &Comm) {
         };
         let run = |comm: &Comm| {
             let mut simulation = Simulation::start(case(), comm).unwrap();
-            simulation.poison = true;
+            simulation.step_control.poison = true;
             for _ in 0..20 {
                 simulation.advance(comm).unwrap();
             }
-            simulation.diagnose(comm);
+            measurements::diagnose(&mut simulation, comm);
             simulation
         };
         let alone = Outcome::of(&run(&Comm::solo()));

@@ -8,11 +8,11 @@ use crate::ranks::{is_rank, on_ranks};
 use crate::sentinel::{id, sentinel};
 use crate::stored::{case, meta, particles, sorted_ids};
 use comm::Comm;
-use model::{Precision, Sharing};
 use files::output::h5::read::SnapshotFile;
 use files::output::h5::{Content, Element, RowType};
 use files::output::snapshot::{Form, Part};
 use files::output::{Block, OutputError, Rows, checkpoint, snapshot};
+use model::{Precision, Sharing};
 use particles::{FIELDS, Life, ParticleStore, rows};
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.

@@ -3,10 +3,10 @@
 use crate::common::outcome::{everything, rubbing, stress_points};
 use crate::ranks::on_each;
 use comm::{Comm, Traffic};
-use model::Case;
-use files::plan::{Load, Particles, loads, loads_of, slabs_at_start, slabs_of};
 use engine::sph::Smoothing;
 use engine::step::{Simulation, bytes_of_messages};
+use files::plan::{Load, Particles, loads, loads_of, slabs_at_start, slabs_of};
+use model::Case;
 
 /// Steps that are compared, through the impact and several balances.
 const STEPS: usize = 50;

@@ -3,8 +3,8 @@
 use crate::physics_support::bars::{axial_stress, force_on_right, in_order, interface_force};
 use crate::physics_support::{median, ready, run_with, start};
 use crate::shocks::{Shocks, impact};
-use exact::finite_strain::Medium;
 use engine::step::Simulation;
+use exact::finite_strain::Medium;
 
 /// Final mean velocity of the aluminium in small strain (m/s).
 const REBOUND: f64 = 386.1;

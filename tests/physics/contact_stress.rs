@@ -4,8 +4,9 @@
 use crate::physics_support::bars::interface_force;
 use crate::physics_support::{inline, ready, run_to, sorted_by, start};
 use comm::Comm;
-use exact::hugoniot::{Medium, impact};
 use engine::step::Simulation;
+use engine::step::contact_stress;
+use exact::hugoniot::{Medium, impact};
 
 /// Both forms, and how far from the plateau the layers in contact may be.
 const FORMS: [&str; 2] = ["conventional", "corrected"];
@@ -29,7 +30,7 @@ impl Layers {
         (body, axis, near): (u32, usize, f64),
         (aside, plateau): (f64, f64),
     ) -> Self {
-        s.measure_contact_stress(&Comm::solo());
+        contact_stress::measure_in(s, &Comm::solo());
         let p = &s.particles;
         let depth = |i: usize| -near * p.position[i][axis];
         let mut order = sorted_by(s, body, depth);
@@ -140,7 +141,7 @@ fn a_plate_on_a_wall_bears_the_plateau() {
         let medium = Medium::of(&s.case.materials[0]).expect("Mie-Grueneisen");
         let exact = impact(&medium, &medium, 200.0);
         run_to(&mut s, 0.7 * 4e-3 / exact.target.shock_speed);
-        s.measure_contact_stress(&Comm::solo());
+        contact_stress::measure_in(&mut s, &Comm::solo());
         let p = &s.particles;
         let first = sorted_by(&s, 0, |i| p.position[i][0])[0];
         let own = p.pressure[first] - p.deviatoric_stress[first][0];
@@ -169,7 +170,7 @@ fn what_a_body_bears_is_the_traction_on_it() {
                  shape.box = {{ lower = [0], upper = [\"2 mm\"] }}\n"
             )));
             run_to(&mut s, 0.1e-6);
-            let (p, carried) = (&s.particles, s.carried_in_contact());
+            let (p, carried) = (&s.particles, contact_stress::carried_in(&s));
             assert_eq!(carried.len(), 4);
             for body in 0..2 {
                 let (mut borne, mut pushed, mut size) = (0.0, 0.0, 0.0);

@@ -9,8 +9,8 @@ use crate::physics_support::{
     crossing, lattice_factor, median, ready, run_to, run_with, slope, sorted_by, start,
 };
 use crate::release::free_surface_velocity;
-use exact::hugoniot::{Impact, Medium, impact};
 use engine::step::Simulation;
+use exact::hugoniot::{Impact, Medium, impact};
 
 /// Of pressure and shock speed.
 const BOUND: f64 = 0.002;

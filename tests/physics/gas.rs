@@ -8,8 +8,8 @@
 )]
 use crate::noh::Noh;
 use crate::physics_support::{median, ready, run_to, start};
-use exact::riemann::{Gas, Riemann};
 use engine::step::Simulation;
+use exact::riemann::{Gas, Riemann};
 
 /// L1 errors of density (kg/m³), velocity (m/s) and pressure (Pa).
 struct Errors([f64; 3]);

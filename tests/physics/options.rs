@@ -5,9 +5,10 @@ use crate::common::outcome::{advance, start};
 use crate::common::random::Random;
 use crate::common::{SPACING, ball, body, case, make_elastic, planes};
 use comm::Comm;
+use engine::step::Simulation;
+use engine::step::measurements;
 use material::{Eos, MieGruneisen, Strength};
 use model::{Axis, Case, ContactMode, Shape, SmoothingLength, SphForm, Vec3};
-use engine::step::Simulation;
 
 /// A box around the origin in two dimensions; edges in spacings.
 fn rectangle(x: f64, y: f64) -> Case {
@@ -52,7 +53,7 @@ fn artificial_stress_keeps_particles_apart_in_tension() {
         case.sph.artificial_stress = epsilon;
         let mut bar = start(case);
         set_velocities(&mut bar, |x| [1200.0 * x[0] / (10.0 * SPACING), 0.0, 0.0]);
-        bar.diagnose(&Comm::solo());
+        measurements::diagnose(&mut bar, &Comm::solo());
         let first = bar.state.totals;
         let mut least = f64::INFINITY;
         while bar.state.time < 1.8e-6 {
@@ -207,7 +208,7 @@ fn conduction_leaves_rest_alone_and_smooths_what_is_compressed() {
         if moving {
             set_velocities(&mut s, |x| [-0.1 * x[0], 0.0, 0.0]);
         }
-        s.diagnose(&Comm::solo());
+        measurements::diagnose(&mut s, &Comm::solo());
         let first = s.state.totals.energy();
         advance(&mut s, 40);
         let particles = &s.particles;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::physics_support::{ready, run_to, start};
-use model::Vec3;
 use engine::step::Simulation;
+use model::Vec3;
 
 /// Positions by identity, which a particle of the quarter shares with its twin in the whole model.
 fn positions(s: &Simulation) -> BTreeMap<u64, Vec3> {

@@ -5,9 +5,10 @@ use crate::common::{SPACING, body, case, make_elastic};
 use crate::physics_support::{inline, run_with, sorted_by, start};
 use comm::Comm;
 use engine::diagnose::Worst;
+use engine::step::Simulation;
+use engine::step::measurements;
 use material::{AfterSpall, Spall};
 use model::{Shape, SphForm, Vec3};
-use engine::step::Simulation;
 
 /// Thickness h of the flyer (m), and half of that of the target.
 const H: f64 = 2e-3;
@@ -185,14 +186,14 @@ fn a_bar_torn_as_it_turns_keeps_angular_momentum_and_energy() {
             particles.velocity[i] = velocity;
             particles.predicted_velocity[i] = velocity;
         }
-        simulation.diagnose(comm);
+        measurements::diagnose(&mut simulation, comm);
         simulation.state.initial = simulation.state.totals;
         let turn = simulation.state.totals.angular_momentum[2].abs();
         simulation.state.angular_momentum_scale = Some(turn);
         simulation.state.worst = Worst::default();
         while simulation.state.time < 3e-6 {
             simulation.advance(comm).unwrap();
-            simulation.diagnose(comm);
+            measurements::diagnose(&mut simulation, comm);
         }
         let state = &simulation.state;
         let failed = state.totals.failed_mass / state.totals.mass;

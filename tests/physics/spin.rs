@@ -1,9 +1,9 @@
 //! Rods that spin, free and elastic: stress turns with matter, and tension bends no lattice.
 
 use crate::physics_support::{inline, run_to, start};
+use engine::step::Simulation;
 use model::Vec3;
 use numerics::vector::cross;
-use engine::step::Simulation;
 
 /// Half the length of the rod (m), and its first angular velocity (1/s).
 const HALF: f64 = 0.02;

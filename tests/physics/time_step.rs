@@ -10,6 +10,7 @@ use crate::physics_support::steps::{
 };
 use crate::physics_support::{inline, ready, start};
 use comm::Comm;
+use engine::step::measurements;
 
 /// Beyond the recommended factor by the margin of the rule.
 const MARGIN: f64 = 1.25;
@@ -122,7 +123,7 @@ fn bodies_much_faster_than_sound_meet() {
         let end = f64::from(10 + gap) * 1e-3 / f64::from(25 * speed);
         while simulation.state.time < end {
             simulation.advance(&comm).unwrap();
-            simulation.diagnose(&comm);
+            measurements::diagnose(&mut simulation, &comm);
         }
         let state = &simulation.state;
         let given = state.pairs[0].impulse[1].abs() / state.initial.momentum[1].abs();

@@ -4,6 +4,7 @@
 use crate::physics_support::absorbing::{Packet, Wave, returned};
 use crate::physics_support::{inline, start};
 use comm::Comm;
+use engine::step::measurements;
 
 /// Packets of .4 and .8 of the depth of the default zone, of which .05 and less come back at 45°.
 #[test]
@@ -68,7 +69,7 @@ touch = {{ body = "target", direction = "-z" }}
         let i = s.particles.id.iter().position(|&other| other == id);
         rows.push([s.state.time, s.particles.pressure[i.expect("the same")]]);
     }
-    s.diagnose(&comm);
+    measurements::diagnose(&mut s, &comm);
     let state = &s.state;
     println!(
         "{width} spacings: {} particles, {} steps, {:.3e} kg yielded in the zone, energy error {:e}, {:?}",

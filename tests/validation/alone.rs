@@ -3,9 +3,9 @@
 use crate::common::process::in_its_own;
 use crate::project;
 use comm::Comm;
+use engine::step::Simulation;
 use files::input;
 use numerics::alone::visited;
-use engine::step::Simulation;
 
 /// Steps of each: balances, searches for parts and the order of the store come in them.
 const STEPS: u64 = 22;

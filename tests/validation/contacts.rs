@@ -1,16 +1,17 @@
 //! Every contact mode on the same problems: the tables of the book's page on choosing a contact,
 //! which `make contact-lab` writes. Reported; the bounds stand in the tests of each problem.
 
+use engine::step::measurements;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::thread;
 
 use crate::physics_support::bars::{STEP, in_one_piece, in_order};
-use rayon::ThreadPoolBuilder;
 use comm::Comm;
+use engine::step::Simulation;
 use files::input;
 use model::Case;
-use engine::step::Simulation;
+use rayon::ThreadPoolBuilder;
 
 /// Names of the modes and what each changes.
 const MODES: &[(&str, &[&str])] = &[
@@ -173,7 +174,7 @@ fn advance(
         if let Err(error) = s.advance(&comm) {
             return (s, Some(error.to_string()));
         }
-        s.diagnose(&comm);
+        measurements::diagnose(&mut s, &comm);
         look(&s);
     }
     (s, None)

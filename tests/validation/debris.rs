@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use crate::common::outcome::{advance, start};
 use crate::common::{body, case};
-use model::{Shape, Vec3};
 use engine::step::Simulation;
+use model::{Shape, Vec3};
 
 /// Spacings across the body.
 const ACROSS: f64 = 100.0;
@@ -31,7 +31,7 @@ fn a_cloud_over_a_hundred_body_sizes_costs_what_the_body_does() {
     };
     let mut simulation = start(case(3, vec![body("cube", cube, 1e-4, Vec3::zeros())], 1.0));
     // The sums of a body at rest too, as a cloud in flight has them.
-    simulation.lists.spare_quiescent = false;
+    simulation.search.lists.spare_quiescent = false;
     let count = simulation.particles.owned();
     let compact = seconds_a_step(&mut simulation);
     for factor in [2.0, 10.0, 50.0, 100.0] {

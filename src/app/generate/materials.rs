@@ -60,7 +60,9 @@ pub fn page() -> String {
         write_row(&mut page, name, &material);
     }
     page.push_str("\n## Constants\n\nA source stands beside the first number that comes from it. The numbers below without one come from the same.\n");
-    for (name, table) in all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table))) {
+    for (name, table) in
+        all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table)))
+    {
         let _ = writeln!(page, "\n### {name}\n\n```toml\n{}\n```", table.trim_end());
     }
     page

@@ -1,7 +1,7 @@
 //! Strong and weak scaling in one chart.
 
-use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 use files::plan::{Row, Weak};
+use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 
 /// Efficiency over the number of ranks: of the model as it is, and of one that is refined as ranks
 /// become more, so that each core has as many particles.

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::results::{Results, only_part};
 use comm::Comm;
-use plot::snapshots;
 use files::input;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
@@ -12,6 +11,7 @@ use files::output::{RunFolder, checkpoint};
 use files::plan::{Outlook, Particles};
 use model::Case;
 use particles::ParticleStore;
+use plot::snapshots;
 
 /// What is planned.
 pub struct Source {

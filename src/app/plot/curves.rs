@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use files::output::RunFolder;
+use files::run::say::seconds;
 use plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };
-use files::output::RunFolder;
-use files::run::say::seconds;
 
 use super::out::{named, save_text, target, write_chart};
 use super::{PlotArgs, name, places, wanted};

@@ -1,8 +1,8 @@
 //! What is told of each particle, by the names that files and plots know.
 
 use super::ExportError;
-use plot::{SYMMETRIC, Shown, Snapshot, TENSOR, VECTOR};
 use files::output::h5::{Array, Content, Element, RowType};
+use plot::{SYMMETRIC, Shown, Snapshot, TENSOR, VECTOR};
 
 /// Group of a snapshot's particle fields.
 const FIELDS: &str = "/VTKHDF/PointData";

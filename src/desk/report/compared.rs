@@ -9,10 +9,10 @@ use super::html::{Html, missing, note, or_untold, table, table_of_texts};
 use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
 use super::sections::verdict;
-use plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 use files::output::RunFolder;
 use model::differences::{Difference, differences};
 use model::readable::short;
+use plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 
 /// The page of two runs, A and B.
 #[must_use]

@@ -10,9 +10,9 @@ use serde_json::json;
 
 use super::found::{Run, told};
 use super::html::{Html, note, swatch};
-use plot::hex;
 use model::SymmetryPlane;
 use model::readable::short;
+use plot::hex;
 use scene::Scene;
 
 /// What runs in the browser.

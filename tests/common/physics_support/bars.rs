@@ -1,7 +1,7 @@
 //! The elastic bars of the paper's sections 3.1 and 3.2.
 
-use model::{Case, Shape};
 use engine::step::Simulation;
+use model::{Case, Shape};
 
 use super::inline;
 

@@ -1,7 +1,7 @@
 //! The breaking dam, `inputs/dam-break`, and what is measured on it.
 
-use plot::largest_reaches;
 use engine::step::Simulation;
+use plot::largest_reaches;
 
 use super::{ready, run_with, start};
 

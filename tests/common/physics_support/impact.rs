@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use model::Shape;
 use engine::step::Simulation;
+use model::Shape;
 
 use super::hole::Plate;
 use super::{median, ready, start};

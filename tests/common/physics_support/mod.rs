@@ -9,10 +9,11 @@ pub mod slope;
 pub mod steps;
 
 use comm::Comm;
+use engine::step::Simulation;
+use engine::step::measurements;
 use files::input;
 use model::Case;
 use numerics::kernel::Kernel;
-use engine::step::Simulation;
 
 /// The case `inputs/<name>/case.toml` with overrides.
 pub fn ready(name: &str, overrides: &[&str]) -> Case {
@@ -45,7 +46,7 @@ pub fn run_with(simulation: &mut Simulation, time: f64, mut look: impl FnMut(&Si
     let comm = Comm::solo();
     while !simulation.is_finished() && simulation.state.time < time {
         simulation.advance(&comm).expect("a step");
-        simulation.diagnose(&comm);
+        measurements::diagnose(simulation, &comm);
         look(simulation);
     }
 }

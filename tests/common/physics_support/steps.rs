@@ -1,8 +1,9 @@
 //! What a longer time step does to a run: used by the tests of the step's factors.
 
 use comm::Comm;
-use model::Case;
 use engine::step::Simulation;
+use engine::step::measurements;
+use model::Case;
 
 use super::impact::{SPHERE, hole_radius};
 use super::{bars::BAR_MATERIALS, inline, median, ready, run_with, sorted_by, start};
@@ -238,7 +239,7 @@ pub fn growth_of_noise(smoothing: f64, alpha: f64, courant: f64) -> f64 {
         if s.advance(&comm).is_err() {
             return f64::INFINITY;
         }
-        s.diagnose(&comm);
+        measurements::diagnose(&mut s, &comm);
         let kinetic = s.state.totals.kinetic_energy;
         if n == 0 {
             first = kinetic;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use plot::colour_of;
 use crate::report::found::{Rows, Run, in_words};
 use crate::report::html::{Html, list, missing, note, swatch, table, table_of_texts};
+use plot::colour_of;
 
 /// Tells the case.
 pub fn tell(run: &Run) -> Result<Html, String> {

@@ -1,9 +1,9 @@
 //! The ledger of contact, by pair of bodies.
 
-use plot::{Columns, Tables};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, table_of_texts};
 use crate::report::picture::chart;
+use plot::{Columns, Tables};
 
 /// Draws the forces, and tells what each pair has come to.
 pub fn tell(run: &Run) -> Result<Html, String> {

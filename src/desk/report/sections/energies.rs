@@ -1,9 +1,9 @@
 //! Energies over time.
 
-use plot::History;
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, table_of_texts};
 use crate::report::picture::chart;
+use plot::History;
 
 /// Columns of the history that are told at the start and at the end.
 const TOLD: [&str; 6] = [

@@ -1,9 +1,9 @@
 //! What hangs together at the end.
 
-use plot::{By, cumulative};
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, note, or_untold, table_of_texts};
 use crate::report::picture::chart;
+use plot::{By, cumulative};
 
 /// Fragments that are listed.
 const LISTED: usize = 12;

@@ -1,9 +1,9 @@
 //! How evenly the ranks were loaded, and where the time went.
 
-use plot::{Columns, History, Tables};
 use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, bar, missing, note, or_untold, table};
 use crate::report::picture::chart;
+use plot::{Columns, History, Tables};
 
 /// Tells load and time.
 pub fn tell(run: &Run) -> Html {

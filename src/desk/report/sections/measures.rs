@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use plot::{Wanted, distributions};
 use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, missing, note, or_untold, table_of_texts};
 use crate::report::picture::chart;
+use plot::{Wanted, distributions};
 
 /// Tells the measures at their last time.
 pub fn tell(run: &Run) -> Html {
