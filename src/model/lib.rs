@@ -30,9 +30,6 @@ mod solid;
 mod surface;
 pub mod units;
 
-#[cfg(test)]
-pub(crate) use surface::tests as surface_tests;
-
 pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;

@@ -286,11 +286,11 @@ impl RigidSurface {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
 
     /// At rest, for all bodies.
-    pub(crate) fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
+    pub(super) fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
         RigidSurface {
             name: String::new(),
             shape,

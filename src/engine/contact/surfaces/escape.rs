@@ -192,10 +192,23 @@ fn rest_on(walls: &[Wall], set: usize) -> Option<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use model::surface_tests::surface;
-    use model::{Mesh, SurfaceShape};
+    use model::{Mesh, Motion, Resistance, SurfaceShape};
 
     const R: f64 = 0.5;
+
+    /// At rest, for all bodies.
+    fn surface(shape: SurfaceShape, inside: bool) -> RigidSurface {
+        RigidSurface {
+            name: String::new(),
+            shape,
+            inside,
+            stiffness: 2.0,
+            resistance: Resistance::default(),
+            bodies: Vec::new(),
+            motion: Motion::default(),
+            spin: None,
+        }
+    }
 
     /// The solid over an outline in x and y (counter-clockwise), from z = −9 to 9.
     fn prism(outline: &[[f64; 2]], ends: &[[usize; 3]]) -> RigidSurface {
