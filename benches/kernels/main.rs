@@ -8,20 +8,20 @@ use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
-use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
 use engine::contact::{ContactTable, TaskForces, overlap};
-use material::{Material, PointBatch};
-use model::ContactClass;
-use particles::neighbours::ForeignLists;
-use numerics::dispatch::{Instructions, Vectorised, available};
-use numerics::exact_sum::ExactSum;
-use numerics::kernel::{ConstantScale, Kernel};
-use numerics::lanes::{LANES, Lanes};
 use engine::sph::corrected::{CorrectedGradient, CorrectedRecord};
 use engine::sph::gradient::VelocityGradient;
 use engine::sph::momentum::{Momentum, PairStress, StressRecord, Viscosity};
 use engine::sph::neighbourhood::{Neighbourhood, Sources};
 use engine::sph::terms::PairTerms;
+use material::{Material, PointBatch};
+use model::ContactClass;
+use numerics::dispatch::{Instructions, Vectorised, available};
+use numerics::exact_sum::ExactSum;
+use numerics::kernel::{ConstantScale, Kernel};
+use numerics::lanes::{LANES, Lanes};
+use particles::neighbours::ForeignLists;
+use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
 
 /// A group whose throughput counts so many elements.
 fn group<'a>(

@@ -3,11 +3,11 @@
 use engine::contact::{ContactTable, ContactView};
 use files::input;
 use model::Case;
+use numerics::lanes::LANES;
 use particles::neighbours::MotionRecord;
 use particles::neighbours::{
     Chunk, ClusterLists, ColumnGrid, ForeignLists, ImageFacts, ImageState, Lengths, Sequence,
 };
-use numerics::lanes::LANES;
 use particles::{Asleep, Image, ParticleStore};
 
 /// Particles along an edge.

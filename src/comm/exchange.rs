@@ -8,7 +8,7 @@ use mpi::traits::AsRaw;
 
 use super::virtual_ranks::{Rank, Tag, Ticket};
 use super::waiting::waiting;
-use super::{Comm, Transport, RawComm};
+use super::{Comm, RawComm, Transport};
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;

@@ -11,7 +11,7 @@ use mpi::ffi;
 use mpi::traits::AsRaw;
 
 use super::waiting::waiting;
-use super::{Comm, Transport, RawComm};
+use super::{Comm, RawComm, Transport};
 
 /// Words before the minima: the number of all words, the number of minima, the bits, and the first entry.
 const HEAD: usize = 6;

@@ -234,7 +234,9 @@ impl Comm {
         receives.resize(self.size(), 0);
         match &self.transport {
             Transport::Solo => receives.copy_from_slice(sends),
-            Transport::Mpi(world) => waiting(|| world.all_to_all_into(sends, receives.as_mut_slice())),
+            Transport::Mpi(world) => {
+                waiting(|| world.all_to_all_into(sends, receives.as_mut_slice()))
+            }
             Transport::Virtual(rank) => rank.all_to_all(sends, receives),
         }
     }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use super::binary_table::{self, BinaryTable, Cells};
 use super::{Column, OutputError, RunFolder, Sheet};
 
-/// Gauges from which on their readings go into such files, in run of `gauges.csv`.
+/// Gauges from which on their readings go into such files, in place of `gauges.csv`.
 pub const MANY: usize = 101;
 
 /// Numbers that wait in memory until they are written: 16 MB.
@@ -45,13 +45,7 @@ impl GaugeRecords {
     }
 
     /// Adds the readings of a gauge at a step and a time (s).
-    pub fn add(
-        &mut self,
-        step: u64,
-        time: f64,
-        gauge: u32,
-        numbers: impl Iterator<Item = f64>,
-    ) {
+    pub fn add(&mut self, step: u64, time: f64, gauge: u32, numbers: impl Iterator<Item = f64>) {
         self.steps.push(step);
         self.times.push(time);
         self.rows.push(gauge);
@@ -140,8 +134,8 @@ mod tests {
 
     #[test]
     fn readings_come_back_in_order_from_several_files() {
-        let run = tempfile::tempdir().unwrap();
-        let folder = RunFolder::at(run.path());
+        let root = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(root.path());
         assert_eq!(sheet(&folder, None).unwrap(), None);
         let names = ["step", "time", "gauge", "coverage", "pressure"];
         let columns = names.map(|name| Column::new(name, "")).to_vec();

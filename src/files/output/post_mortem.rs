@@ -141,7 +141,12 @@ fn append_fields(text: &mut String, particles: &ParticleStore, particle: u32) {
 }
 
 /// A line for each neighbour: those of the particle's own body, then others.
-fn append_neighbours(text: &mut String, case: &Case, particles: &ParticleStore, about: &PostMortem) {
+fn append_neighbours(
+    text: &mut String,
+    case: &Case,
+    particles: &ParticleStore,
+    about: &PostMortem,
+) {
     let own = particles.body[about.members[0] as usize];
     let spacing = case.bodies[own as usize].lattice.spacing;
     for (title, other) in [

@@ -20,7 +20,7 @@ use super::h5::read::PORTION;
 use super::h5::{Element, RowType, Writer};
 pub use super::quantity::{Quantity, quantities, quantities_of};
 use super::{OutputError, Rows, VERSION, commit, files, publish_or_remove, unit_of_model};
-pub use format::{SnapshotFormat, Portion};
+pub use format::{Portion, SnapshotFormat};
 use grid::{GRID, write_grid};
 pub use plan::Plan;
 use values::write_values;
@@ -190,7 +190,12 @@ fn row_type(kind: FieldKind) -> RowType {
 }
 
 /// Writes the metadata of the case and of the run.
-fn write_meta(comm: &Comm, file: &mut Writer, meta: &Meta, format: &SnapshotFormat) -> Result<(), OutputError> {
+fn write_meta(
+    comm: &Comm,
+    file: &mut Writer,
+    meta: &Meta,
+    format: &SnapshotFormat,
+) -> Result<(), OutputError> {
     let case = meta.case;
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
     let spacings: Vec<f64> = case.bodies.iter().map(|b| b.lattice.spacing).collect();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::output::{Block, OutputError};
 use comm::Comm;
 
-use super::gate::{self, Located, Gate};
+use super::gate::{self, Gate, Located};
 use super::{Element, Number, RowType, explain};
 
 /// A dataset of a file.

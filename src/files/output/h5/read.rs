@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::output::{Block, OutputError};
 
 use super::explain;
-use super::gate::{self, Located, Gate};
+use super::gate::{self, Gate, Located};
 
 /// Group of the grid.
 const GRID: &str = "/VTKHDF";

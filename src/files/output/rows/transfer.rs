@@ -105,7 +105,13 @@ impl Transfer {
     }
 
     /// Exchanges the numbers of rows. The k-th section of `order` starts at `cuts[k]`.
-    fn choose_peers(&mut self, comm: &Comm, exchange: &mut Exchange, cuts: &[usize], routes: &Routes) {
+    fn choose_peers(
+        &mut self,
+        comm: &Comm,
+        exchange: &mut Exchange,
+        cuts: &[usize],
+        routes: &Routes,
+    ) {
         let section = |rank: usize| match routes.to.binary_search(&rank) {
             Ok(k) => cuts[k]..cuts[k + 1],
             Err(_) => 0..0,
@@ -216,12 +222,7 @@ fn row_of(rows: &[u8], k: usize, size: usize) -> &[u8] {
 }
 
 /// Fills `bytes` with the rows of an order, of `size` bytes each.
-fn gather<'a>(
-    bytes: &mut [u8],
-    order: &[u32],
-    size: usize,
-    row: impl Fn(u32) -> &'a [u8] + Sync,
-) {
+fn gather<'a>(bytes: &mut [u8], order: &[u32], size: usize, row: impl Fn(u32) -> &'a [u8] + Sync) {
     let pieces = bytes.par_chunks_mut(GRAIN * size);
     let pieces = pieces.zip(order.par_chunks(GRAIN));
     pieces.for_each(|(bytes, order)| {

@@ -1,6 +1,6 @@
 //! The snapshots of a case: the default ones, and those of schedules of their own.
 
-use super::format::{SnapshotFormat, Portion};
+use super::format::{Portion, SnapshotFormat};
 use crate::output::quantity::{Quantity, quantities_of};
 use crate::output::{OutputError, Schedule};
 use model::{Case, Precision, SnapshotSchedule};
