@@ -30,9 +30,9 @@ use world::{Abandoned, World};
 /// The machine that virtual ranks run on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Machine {
-    /// From the end of a message at the sender to its end at the receiver (s).
+    /// Time from the end of a message at the sender to its end at the receiver (s).
     pub latency: f64,
-    /// Of the messages of a rank, which leave one after the other (bytes/s).
+    /// Bandwidth of the messages of a rank, which leave one after the other (bytes/s).
     pub bandwidth: f64,
     /// Source of the time that ranks compute.
     pub computing: Computing,

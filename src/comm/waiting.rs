@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::virtual_ranks;
 
 thread_local! {
-    /// Of this thread: MPI is on the main thread alone.
+    /// Waiting of this thread: MPI is on the main thread alone.
     static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };
 }
 

@@ -23,7 +23,7 @@ pub struct VirtualTime {
     pub messages: u64,
     /// Bytes sent to peers.
     pub bytes: u64,
-    /// Calls that all ranks take part in.
+    /// Collective calls.
     pub collectives: u64,
 }
 
@@ -32,9 +32,9 @@ pub struct VirtualTime {
 pub struct Clock {
     computing: Computing,
     time: VirtualTime,
-    /// When the last of the own messages has left (s).
+    /// Time at which the last of the own messages has left (s).
     sent: f64,
-    /// When the thread began, and its processor time when it computed last.
+    /// Start of the thread, and its processor time when it computed last.
     began: Instant,
     processor: Duration,
 }

@@ -1,4 +1,4 @@
-//! What virtual ranks share: messages under way, and where they meet.
+//! State shared by virtual ranks: messages under way, and collective calls.
 
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
@@ -181,7 +181,7 @@ impl World {
         self.calls.iter().for_each(Condvar::notify_one);
     }
 
-    /// Waits until somebody [calls](Self::call).
+    /// Waits for a [call](Self::call).
     fn wait<'a>(
         &'a self,
         mut state: MutexGuard<'a, State>,

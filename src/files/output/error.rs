@@ -9,7 +9,7 @@ pub enum OutputError {
     /// The system refused.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {
-        /// What was tried, as a verb.
+        /// The action, as a verb.
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
@@ -19,7 +19,7 @@ pub enum OutputError {
     /// HDF5 refused.
     #[error("cannot {action} {}: {reason}", path.display())]
     Hdf5 {
-        /// What was tried, as a verb.
+        /// The action, as a verb.
         action: String,
         /// The file.
         path: PathBuf,
@@ -56,7 +56,7 @@ pub enum OutputError {
     NoCheckpoint {
         /// The run's folder.
         path: PathBuf,
-        /// Why existing ones could not be read.
+        /// Errors of existing ones.
         passed_over: Vec<String>,
     },
     /// A checkpoint in no run folder.
@@ -74,7 +74,7 @@ pub enum OutputError {
     Damaged {
         /// The file or folder.
         path: PathBuf,
-        /// What is wrong, and what to do.
+        /// The damage, and advice.
         what: String,
     },
     /// A checkpoint of another program version.

@@ -344,7 +344,7 @@ mod tests {
             .map(|(_, cells)| cells[2].as_str())
             .collect();
         assert_eq!(read, names);
-        // Cut off anywhere in its last row, the table goes on as if that had never been begun.
+        // Cut off anywhere in its last row, the table continues as if that had never been begun.
         let last = whole.find("3,0.5,plain").unwrap();
         for cut in last..whole.len() {
             fs::write(&path, &whole[..cut]).unwrap();
@@ -365,7 +365,7 @@ mod tests {
             error.to_string().contains("row 2 has not 3 values"),
             "{error}"
         );
-        // What a power cut leaves after the last row that is kept.
+        // Remains of a power cut after the last row that is kept.
         fs::write(&path, format!("{whole}\0\0\0\n4,0.5\n")).unwrap();
         Table::resume(&path, &columns(), "step", 3.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole);

@@ -34,7 +34,7 @@ pub struct Holder {
     /// The batch job that it is part of, where a scheduler started it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub job: Option<String>,
-    /// When it opened the folder (seconds since 1970, UTC).
+    /// Time of opening the folder (seconds since 1970, UTC).
     pub started: u64,
 }
 
@@ -224,7 +224,7 @@ fn open(path: &Path) -> io::Result<(File, Result<(), TryLockError>)> {
         let file = options.read(true).write(true).create(true).open(path)?;
         let verdict = file.try_lock();
         tries += 1;
-        // One that has just been removed is nobody's any more.
+        // A file that has just been removed is locked in vain.
         let again = matches!(verdict, Err(TryLockError::WouldBlock)) || !is_at(&file, path);
         if !again || tries == TRIES {
             return Ok((file, verdict));

@@ -13,7 +13,7 @@ const MOST: u64 = 1 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Partitions {
     total: u64,
-    /// Of each but the last.
+    /// Rows of each but the last.
     rows: u64,
 }
 
@@ -77,7 +77,7 @@ impl Partitions {
 /// Checks the partitions that an untrusted file declares.
 ///
 /// # Errors
-/// A text if they cannot be those of so many rows.
+/// A text if they cannot be those of `rows` rows.
 pub fn check(sizes: &[i64], rows: u64) -> Result<(), String> {
     check_count(sizes.len() as u64)?;
     let mut sum = 0_u64;
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Of virtual particles: nothing is as large in memory.
+    /// Numbers of virtual particles, more than fit memory.
     #[test]
     fn more_than_four_thousand_million_rows_have_their_places() {
         for (total, ranks) in [(1 << 32, 7), (5_000_000_001, 10_000), (1 << 40, 100_000)] {

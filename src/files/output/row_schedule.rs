@@ -13,7 +13,7 @@ const BODIES: u32 = 50;
 /// Most steps between two checks of the sums over all particles, which find spurious gains of energy.
 const SUMS_EVERY: u64 = 10;
 
-/// When rows of `history.csv` and the tables that go with it are due: a pure function of steps and
+/// Due rows of `history.csv` and the tables that go with it: a pure function of steps and
 /// their times, as [`Schedule`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowSchedule {

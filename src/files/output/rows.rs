@@ -43,7 +43,7 @@ struct ToGroups {
 }
 
 impl ToGroups {
-    /// Of all ranks, unless they are one group. Collective.
+    /// Over all ranks, unless they are one group. Collective.
     fn new(comm: &Comm) -> Option<Self> {
         let (groups, rank) = (Groups::of(comm.size()), comm.rank());
         (groups.count() > 1).then(|| Self {

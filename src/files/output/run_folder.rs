@@ -250,7 +250,7 @@ paths! {
 }
 
 paths! {
-    /// The file whose appearance asks the run to stop.
+    /// The file that stops the run when it appears.
     stop: "stop";
     /// The folder of snapshots.
     snapshots: SNAPSHOTS;

@@ -41,7 +41,7 @@ pub struct Status {
     pub step: u64,
     /// Time reached (s).
     pub time: f64,
-    /// Why it stopped or failed.
+    /// Reason of a stop or failure.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reason: Option<String>,
     /// Exit code of the program, once it is over.
@@ -84,7 +84,7 @@ pub struct Outlook {
     pub written: u64,
     /// Seconds that this process has run.
     pub wall_seconds: f64,
-    /// Seconds that are left, once the first steps have shown how fast they are.
+    /// Seconds left, once the first steps have been timed.
     pub seconds_left: Option<f64>,
     /// Seconds that a step takes, the mean of this process.
     pub seconds_per_step: f64,
@@ -117,13 +117,13 @@ pub struct Outlook {
 pub struct Energies {
     /// Times (s).
     pub time: Vec<f64>,
-    /// Kinetic.
+    /// Kinetic energy.
     pub kinetic: Vec<f64>,
-    /// Internal.
+    /// Internal energy.
     pub internal: Vec<f64>,
-    /// Of contact.
+    /// Energy of contact.
     pub contact: Vec<f64>,
-    /// All, that of gravity included.
+    /// Total energy, that of gravity included.
     pub total: Vec<f64>,
 }
 

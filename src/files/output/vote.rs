@@ -49,7 +49,7 @@ pub fn agree<T>(comm: &Comm, result: Result<T, OutputError>) -> Result<T, Output
 /// Runs `task` on rank 0 and gives its verdict to every rank. Collective.
 ///
 /// # Errors
-/// What `task` returns, with the same text on every rank.
+/// The error of `task`, with the same text on every rank.
 pub fn on_root(
     comm: &Comm,
     task: impl FnOnce() -> Result<(), OutputError>,
@@ -61,7 +61,7 @@ pub fn on_root(
 /// Collective.
 ///
 /// # Errors
-/// That of writing or of publishing, with the same text on every rank.
+/// The error of writing or of publishing, with the same text on every rank.
 pub(super) fn publish_or_remove(
     comm: &Comm,
     written: Result<(), OutputError>,
@@ -83,7 +83,7 @@ pub(super) fn publish_or_remove(
 /// rank sees of a file system by itself. Collective.
 ///
 /// # Errors
-/// What `task` returns, with the same text on every rank.
+/// The error of `task`, with the same text on every rank.
 ///
 /// # Panics
 /// If the result is no plain data.

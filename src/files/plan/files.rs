@@ -24,7 +24,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Of a run with numbers of particles and steps.
+    /// Files of a run with `particles` and `steps`.
     ///
     /// # Errors
     /// [`OutputError::UnknownField`].

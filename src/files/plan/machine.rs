@@ -210,7 +210,7 @@ impl Machine {
         text
     }
 
-    /// The same with one constant twice as large.
+    /// The machine with one constant twice as large.
     #[must_use]
     pub fn doubled(&self, constant: &Constant) -> Self {
         let mut machine = self.clone();

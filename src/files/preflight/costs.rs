@@ -50,7 +50,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Of a case.
+    /// Costs of a case.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of_case(case: &Case) -> Self {

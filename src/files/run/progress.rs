@@ -177,7 +177,7 @@ fn line(state: &RunState) -> String {
     )
 }
 
-/// The terminal that the user looks at. mpirun gives its ranks pipes in place of its own error
+/// The terminal of the user. mpirun gives its ranks pipes in place of its own error
 /// stream, so the bar goes straight to where that leads.
 fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {

@@ -43,7 +43,7 @@ impl Watched {
         Self::of(&case.run, case.dimension, &simulation.state, past)
     }
 
-    /// Of a run that steps from a state on.
+    /// Of a run that begins at a state.
     fn of(
         control: &RunControl,
         dimension: usize,

@@ -28,7 +28,7 @@ pub struct Manifest {
     pub time: f64,
     /// Number of particles.
     pub particles: u64,
-    /// How many ranks wrote it.
+    /// Number of ranks that wrote it.
     pub ranks: usize,
     /// Bytes of the state file.
     pub size: u64,

@@ -43,7 +43,7 @@ pub enum Element {
     U8,
     /// `f32`.
     F32,
-    /// UTF-8 text of so many bytes, padded with zeros.
+    /// UTF-8 text of this many bytes, padded with zeros.
     Text(usize),
 }
 

@@ -14,7 +14,7 @@ const GRID: &str = "/VTKHDF";
 /// Attribute of `/whipple` that describes the portion of the model in a snapshot, if it is not all of it.
 pub const PORTION: &str = "part";
 
-/// Why a snapshot could not be read.
+/// An error of reading a snapshot.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file is missing, is not HDF5 or is damaged.
@@ -29,7 +29,7 @@ pub enum ReadError {
     Layout {
         /// The file.
         path: PathBuf,
-        /// The object or attribute that was looked for.
+        /// The missing object or attribute.
         what: String,
         /// The message of HDF5.
         reason: String,

@@ -17,7 +17,7 @@ use comm::pieces;
 
 use super::RowType;
 
-/// Largest piece of one call: MPI counts bytes in `i32` in places.
+/// Largest piece of one call: some calls of MPI count bytes in `i32`.
 const PIECE: usize = 1 << 30;
 
 /// Makes one call under the library's lock and checks its return code.
@@ -109,7 +109,7 @@ fn segments(row: RowType, block: Block) -> impl Iterator<Item = Segment> {
 fn select_rows(space: &Dataspace, row: RowType, first: u64, count: u64) -> hdf5::Result<()> {
     let start = [first, 0];
     let counts = [count, row.components as u64];
-    // SAFETY: the space has at most two dimensions, and so many numbers are given.
+    // SAFETY: the space has at most two dimensions, and as many numbers are given.
     call(|| unsafe {
         H5Sselect_hyperslab(
             space.id(),

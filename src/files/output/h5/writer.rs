@@ -44,7 +44,7 @@ impl<'a> Writer<'a> {
         Self::create_aligned(comm, path, None)
     }
 
-    /// As [`Self::create`], where arrays begin at multiples of so many bytes, if that is wanted.
+    /// As [`Self::create`], where arrays begin at multiples of `alignment` bytes, if that is given.
     /// Collective.
     ///
     /// # Errors
@@ -208,7 +208,7 @@ impl<'a> Writer<'a> {
         written.map_err(|e| self.refusal(name, &e))
     }
 
-    /// Writes a dataset of a few numbers that every rank knows.
+    /// Writes a dataset of a few numbers that all ranks have.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
@@ -223,7 +223,7 @@ impl<'a> Writer<'a> {
         self.rows(name, RowType::single(element), block, bytes)
     }
 
-    /// Writes a dataset of one text of any length that every rank knows.
+    /// Writes a dataset of one text of any length that all ranks have.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].

@@ -216,7 +216,7 @@ impl Gathered<'_> {
     }
 }
 
-/// The k-th of rows of so many bytes.
+/// The k-th of rows of `size` bytes.
 fn row_of(rows: &[u8], k: usize, size: usize) -> &[u8] {
     &rows[k * size..(k + 1) * size]
 }

@@ -12,7 +12,7 @@ pub struct SnapshotFormat<'a> {
     pub quantities: &'a [Quantity],
     /// The particles that it holds.
     pub portion: &'a Portion,
-    /// Of positions and of fields that are no whole numbers.
+    /// Precision of positions and real fields.
     pub precision: Precision,
     /// The schedule that it belongs to, if it is no default snapshot.
     pub schedule: Option<&'a str>,
@@ -37,9 +37,9 @@ impl<'a> SnapshotFormat<'a> {
 /// The particles that a snapshot holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Portion {
-    /// Of these bodies; of all if absent.
+    /// Particles of these bodies; of all if absent.
     pub bodies: Option<Vec<usize>>,
-    /// In this region.
+    /// Particles in this region.
     pub region: Region,
 }
 
