@@ -1,4 +1,4 @@
-//! What a plan must know of this machine, from short runs on it.
+//! The constants of this machine for a plan, from short runs on it.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -12,8 +12,8 @@ use super::messages::Messages;
 use super::report::Report;
 use files::plan::{CONSTANTS, Layout, Machine, Outlook, Particles, Sharing, computing, step_time};
 
-/// The impact that tells the time of a particle, and a plate and its half, whose images behind a plane
-/// are as many as its particles.
+/// The impact that measures the time of a particle, and a plate and its half, which has as many images
+/// behind a plane as particles.
 const IMPACT: &str = "quarter-50k";
 const PLATES: [&str; 2] = ["plate", "half-plate"];
 
@@ -22,11 +22,11 @@ const REPEAT: u32 = 3;
 /// Bytes that are written to measure the disk.
 const WRITTEN: usize = 1 << 28;
 
-/// Measures this machine; `folder` is on the disk that is measured. Of messages between nodes it tells
-/// what an ordinary cluster has.
+/// Measures this machine; `folder` is on the disk that is measured. Messages between nodes are those of
+/// an ordinary cluster.
 ///
 /// # Errors
-/// What does not work.
+/// A message of the failed measurement.
 pub fn calibrate(folder: &Path) -> Result<Machine, String> {
     let scratch = Scratch::create()?;
     let time = |name: &str, configuration| core_time(&scratch, name, configuration);
@@ -65,7 +65,7 @@ pub fn calibrate(folder: &Path) -> Result<Machine, String> {
     Ok(machine)
 }
 
-/// Four digits: no run tells more.
+/// Rounds to four digits: no run measures more.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
@@ -81,7 +81,7 @@ fn core_time(scratch: &Scratch, name: &str, configuration: Configuration) -> Res
     Ok(1e-6 / row.million_updates_per_second_per_core)
 }
 
-/// What messages take between ranks on all cores, one fewer if they are odd.
+/// Times of messages between ranks on all cores, one fewer if they are odd.
 fn messages(scratch: &Scratch) -> Result<Messages, String> {
     let figures = scratch.0.join("messages.json");
     let mut command = bench_on(cores() / 2 * 2)?;
@@ -95,12 +95,12 @@ fn bench(name: &str) -> &'static BenchCase {
     cases.find(|case| case.name == name).expect("a fixed case")
 }
 
-/// A case cut for so many ranks of one node, and its number of particles.
+/// The layout of a case on `ranks` ranks of one node, and its number of particles.
 fn layout(name: &str, ranks: usize) -> Result<(Layout, usize), String> {
     let case = bench(name).read().map_err(|error| error.to_string())?;
     let particles = Particles::at_start(&case);
     let outlook = Outlook::new(&case, &particles, None);
-    let layout = Layout::new(&case, (&particles, None, &outlook), (ranks, None), ranks);
+    let layout = Layout::new(&case, &particles, None, &outlook, ranks, None, ranks);
     let layout = layout.ok_or("it has no particles")?;
     Ok((layout, particles.positions.len()))
 }
@@ -113,8 +113,8 @@ fn images_of(name: &str) -> Result<f64, String> {
     Ok(images / as_number(particles))
 }
 
-/// By which part cores are slower than the model of an empty machine tells, where each has a rank and
-/// the core time of a particle and step (s) is this.
+/// Fraction by which cores are slower than the model of an empty machine predicts, where each has a rank
+/// and the core time of a particle and step (s) is `measured`.
 fn crowding(machine: &Machine, measured: f64) -> Result<f64, String> {
     let ranks = cores();
     let (layout, particles) = layout(IMPACT, ranks)?;
@@ -122,13 +122,13 @@ fn crowding(machine: &Machine, measured: f64) -> Result<f64, String> {
         threads: 1,
         ranks_per_node: ranks,
     };
-    let told = step_time(&layout.loads, machine, sharing).all;
+    let predicted = step_time(&layout.loads, machine, sharing).all;
     let loads = layout.loads.iter();
     let computing = loads
         .map(|load| computing(load, machine))
         .fold(0.0, f64::max);
     let step = measured * as_number(particles) / as_number(ranks);
-    Ok(((step - told) / computing).max(0.0))
+    Ok(((step - predicted) / computing).max(0.0))
 }
 
 /// Bytes that are written in a second, to the disk itself.

@@ -9,7 +9,7 @@ use model::Case;
 pub struct BenchCase {
     /// Name on the command line and in reports.
     pub name: &'static str,
-    /// A line for people.
+    /// Description on one line.
     pub what: &'static str,
     text: &'static str,
     set: &'static [&'static str],
@@ -17,7 +17,7 @@ pub struct BenchCase {
     pub begin: f64,
     /// Steps that are timed.
     pub steps: u64,
-    /// One of the small cases that only try the command.
+    /// True for small cases that only test the command.
     pub quick: bool,
     /// Measured only where it is named.
     pub on_demand: bool,
@@ -143,7 +143,7 @@ impl BenchCase {
     }
 }
 
-/// The names of all cases with what they are, for `--help`.
+/// The names and descriptions of all cases, for `--help`.
 pub fn table() -> String {
     CASES.iter().fold(String::new(), |mut text, case| {
         let start = if text.is_empty() { "" } else { "\n" };

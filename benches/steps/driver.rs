@@ -20,8 +20,8 @@ use files::run::say::{say, warn};
 pub(super) type Configuration = (usize, usize);
 const CONFIGURATIONS: [Configuration; 3] = [(1, 1), (1, 2), (2, 1)];
 
-/// What `mpirun` needs to know, as names and values of its environment: ranks are not to be bound,
-/// since they bind their own threads. Names of Open MPI 4 and 5; what the caller has set stays.
+/// Environment of `mpirun`, names and values: ranks are not to be bound, since they bind their own
+/// threads. Names of Open MPI 4 and 5; variables that the caller has set stay.
 const LAUNCH: [(&str, &str); 2] = [
     ("OMPI_MCA_hwloc_base_binding_policy", "none"),
     ("PRTE_MCA_hwloc_default_binding_policy", "none"),
@@ -65,7 +65,7 @@ fn measure_all(args: &BenchArgs) -> Result<(), String> {
         report.rows.extend(rows);
         report.print_case(case);
     }
-    report.print_parts();
+    report.print_breakdown();
     report.print_efficiencies();
     report
         .write(args.json.as_deref())
@@ -85,7 +85,7 @@ fn measure_case(
 ) -> Result<Vec<Row>, String> {
     let state = (case.begin > 0.0).then(|| scratch.join(case.name));
     if let Some(folder) = &state {
-        tell(case, "stepping to where it begins");
+        show(case, "stepping to where it begins");
         let mut command = program((1, cores()), case)?;
         launch(command.arg("--save").arg(folder))?;
     }
@@ -93,7 +93,7 @@ fn measure_case(
     for repetition in 1..=args.repeat {
         for (&configuration, rows) in configurations.iter().zip(&mut repetitions) {
             let (ranks, threads) = configuration;
-            tell(
+            show(
                 case,
                 &format!(
                     "{ranks} x {threads}, repetition {repetition} of {}",
@@ -116,7 +116,7 @@ fn measure_case(
     if let Some(folder) = &state {
         let _ = std::fs::remove_dir_all(folder);
     }
-    tell(case, "");
+    show(case, "");
     let mut rows: Vec<Row> = repetitions.iter().map(|rows| Row::median(rows)).collect();
     let one = rows[0].clone();
     for row in &mut rows {
@@ -125,7 +125,7 @@ fn measure_case(
     Ok(rows)
 }
 
-/// Why a configuration cannot be measured here.
+/// The reason why a configuration cannot be measured here, if there is one.
 pub(super) fn obstacle((ranks, threads): Configuration) -> Option<String> {
     let (needed, cores) = (ranks * threads, cores());
     if needed > cores {
@@ -142,7 +142,7 @@ pub(super) fn obstacle((ranks, threads): Configuration) -> Option<String> {
     }
 }
 
-/// Why `mpirun` does not start ranks, from what it says, and what to do.
+/// The reason why `mpirun` does not start ranks, from its message, with advice.
 fn refusal(message: &str) -> String {
     // Both the option and the variables that Open MPI's essay of many lines names.
     if message.contains("allow-run-as-root") {
@@ -150,17 +150,14 @@ fn refusal(message: &str) -> String {
                 OMPI_ALLOW_RUN_AS_ROOT=1 and OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1"
             .to_owned();
     }
+    // Open MPI sets lines of dashes around its messages.
+    let is_rule = |line: &str| line.bytes().all(|byte| byte == b'-');
     let mut lines = message.lines().map(str::trim);
-    let said = lines.find(|line| line.len() > 1 && !is_rule(line));
+    let first = lines.find(|line| line.len() > 1 && !is_rule(line));
     format!(
         "mpirun does not work here ({})",
-        said.unwrap_or("it says nothing")
+        first.unwrap_or("it says nothing")
     )
-}
-
-/// Whether a line is the dashes that Open MPI sets around its messages.
-fn is_rule(line: &str) -> bool {
-    line.bytes().all(|byte| byte == b'-')
 }
 
 /// This program measuring one case on one configuration.
@@ -175,7 +172,7 @@ pub(super) fn program(
     Ok(command)
 }
 
-/// `whipple bench` of this program on so many ranks.
+/// `whipple bench` of this program on `ranks` ranks.
 pub(super) fn bench_on(ranks: usize) -> Result<Command, String> {
     let own = std::env::current_exe().map_err(|e| format!("this program is not found: {e}"))?;
     let mut command = if ranks == 1 {
@@ -203,7 +200,7 @@ fn mpirun(ranks: usize) -> Command {
 /// Runs a command to its end.
 ///
 /// # Errors
-/// What it warns of, if it does not start or fails.
+/// Its message, if it does not start or fails.
 pub(super) fn launch(command: &mut Command) -> Result<(), String> {
     let program = command.get_program().to_string_lossy().into_owned();
     let output = command
@@ -213,23 +210,23 @@ pub(super) fn launch(command: &mut Command) -> Result<(), String> {
     if output.status.success() {
         return Ok(());
     }
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    Err(if said.trim().is_empty() {
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    Err(if message.trim().is_empty() {
         format!("{program} ended with {}", output.status)
     } else {
-        said
+        message
     })
 }
 
-/// What a measuring process has left.
+/// Reads the results of a measuring process.
 pub(super) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
     let wrong = |error: &dyn std::fmt::Display| format!("cannot read {}: {error}", path.display());
     let text = std::fs::read(path).map_err(|e| wrong(&e))?;
     serde_json::from_slice(&text).map_err(|e| wrong(&e))
 }
 
-/// Says on a terminal what is going on, over what it said last.
-fn tell(case: &BenchCase, what: &str) {
+/// Shows on a terminal what is being measured, over the last such line.
+fn show(case: &BenchCase, what: &str) {
     if std::io::stderr().is_terminal() {
         let text = if what.is_empty() {
             String::new()
@@ -240,7 +237,7 @@ fn tell(case: &BenchCase, what: &str) {
     }
 }
 
-/// A folder for states and figures that goes with its owner.
+/// A folder for states and figures, removed when dropped.
 pub(super) struct Scratch(pub(super) PathBuf);
 
 impl Scratch {

@@ -158,7 +158,7 @@ fn measure_cases(args: &BenchArgs, comm: &Comm) -> Result<(), String> {
             .collect::<Result<Vec<Row>, String>>()?;
         let mut row = Row::median(&repetitions);
         if !report.rows.is_empty() {
-            // What the case before has left to the allocator would hide what this one takes.
+            // Memory that the last case has left to the allocator would hide that of this one.
             row.peak_bytes_per_particle = None;
         }
         report.rows.push(row);
@@ -167,17 +167,17 @@ fn measure_cases(args: &BenchArgs, comm: &Comm) -> Result<(), String> {
         }
     }
     if comm.is_root() {
-        report.print_parts();
+        report.print_breakdown();
     }
     on_root(comm, || report.write(args.json.as_deref())).map_err(|error| error.to_string())
 }
 
-/// Finds out before the work whether the file of the figures can be written.
+/// Checks before the work that the file of the figures can be written.
 fn writable(args: &BenchArgs) -> Result<(), String> {
     let Some(path) = &args.json else {
         return Ok(());
     };
-    // What it holds stays until there is something better.
+    // Its content stays until the end.
     std::fs::OpenOptions::new()
         .append(true)
         .create(true)

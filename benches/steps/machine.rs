@@ -1,4 +1,4 @@
-//! What the figures belong to.
+//! The machine that was measured.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -34,7 +34,7 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// A number that processes of one node share, and others hardly do.
+/// A hash of the host name.
 pub fn host() -> u64 {
     let mut hasher = DefaultHasher::new();
     let name = std::fs::read("/proc/sys/kernel/hostname");

@@ -16,8 +16,8 @@ use particles::ParticleStore;
 /// Steps before the timed ones, in which buffers grow, caches fill and, over one interval between
 /// balances, ranks learn their speeds.
 const WARM_UP: u64 = 30;
-/// How many steps before the store is put in order a prepared state is taken: the warm-up passes
-/// the order, and the timed steps find memory as a long run does.
+/// Steps from a prepared state to the next ordering of the store: the warm-up passes the ordering, and the
+/// timed steps find memory as a long run does.
 const BEFORE_ORDER: u64 = 2;
 
 /// Steps to the state that a case begins from and writes it into a folder. Collective.
@@ -76,7 +76,7 @@ pub fn measure(
     ))
 }
 
-/// A step and what `whipple run` does after it with all files off.
+/// A step and the work of `whipple run` after it with all files off.
 fn step(comm: &Comm, simulation: &mut Simulation) -> Result<(), String> {
     let before = simulation.state.time;
     simulation.advance(comm).map_err(|e| e.to_string())?;
@@ -117,7 +117,7 @@ fn resumed(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<Simulation, 
     Simulation::resume(case, comm, state, particles).map_err(|e| e.to_string())
 }
 
-/// What all ranks have done so far.
+/// Sums over all ranks so far.
 struct Counts {
     updates: u64,
     messages: u64,
@@ -169,17 +169,17 @@ fn row(
         .zip(after.nanoseconds.iter().zip(&before.nanoseconds));
     let nanoseconds_by_phase: BTreeMap<String, f64> = phases
         .map(|(&(_, name), (after, before))| {
-            // Sums over ranks, each of which keeps its threads from other work.
+            // Sums over ranks, each of which occupies its threads.
             (
                 name.to_owned(),
                 (after - before) as f64 * threads as f64 / updates,
             )
         })
         .collect();
-    let parts = simulation.memory_by_part();
-    let mut bytes = parts.map(|(_, bytes)| bytes as u64);
+    let memory = simulation.memory_by_part();
+    let mut bytes = memory.map(|(_, bytes)| bytes as u64);
     comm.sum_u64(&mut bytes);
-    let bytes_by_part: BTreeMap<String, f64> = parts
+    let bytes_by_part: BTreeMap<String, f64> = memory
         .iter()
         .zip(bytes)
         .map(|((name, _), bytes)| ((*name).to_owned(), bytes as f64 / particles))

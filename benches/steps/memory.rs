@@ -1,17 +1,17 @@
 //! Memory of this process as the system counts it.
 
-/// The memory that a process has before it does something, to see what that takes at its peak.
+/// Memory of the process at the start of a measurement, to find the increase up to its peak.
 pub struct Resident(Option<u64>);
 
 impl Resident {
-    /// Begins: what was a peak before does not count, where the system can forget it.
+    /// Starts; resets the peak where the system supports it.
     pub fn start() -> Self {
         // 5 resets the peak (Linux, proc(5)).
-        let forgot = std::fs::write("/proc/self/clear_refs", "5").is_ok();
-        Self(status("VmRSS:").filter(|_| forgot))
+        let reset = std::fs::write("/proc/self/clear_refs", "5").is_ok();
+        Self(status("VmRSS:").filter(|_| reset))
     }
 
-    /// Bytes at the peak beyond those at the start; nothing where the system does not tell.
+    /// Bytes at the peak beyond those at the start; `None` if unknown.
     pub fn peak(&self) -> Option<u64> {
         Some(status("VmHWM:")?.saturating_sub(self.0?))
     }

@@ -1,4 +1,4 @@
-//! How long messages between ranks and calls of all of them take.
+//! Times of messages between ranks and of collective calls.
 
 use std::path::Path;
 use std::time::Instant;
@@ -11,34 +11,34 @@ use comm::{Comm, Exchange, Joint};
 use files::output::{on_root, write_json};
 use files::run::say::say;
 
-/// Bytes of a message that tells the latency, and of one that tells the bandwidth.
+/// Bytes of a message to measure the latency, and of one to measure the bandwidth.
 const SHORT: usize = 64;
 const LONG: usize = 1 << 22;
-/// Messages that are timed together, and how often; the median counts.
+/// Messages that are timed together, and repetitions; the median counts.
 const SHORT_ROUNDS: u32 = 200;
 const LONG_ROUNDS: u32 = 5;
 const REPEAT: usize = 21;
-/// What a step joins, about: exact sums of a case with contact, and extremes.
+/// About the sums and minima of a step with contact.
 const SUMS: usize = 1024;
 const LEAST: usize = 16;
 
-/// What ranks take to talk, as pairs 0 and 1, 2 and 3, … do at the same time.
+/// Times of communication, where pairs 0 and 1, 2 and 3, … exchange messages at the same time.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Messages {
-    /// Whether the two of a pair are on different nodes.
+    /// True if the two of a pair are on different nodes.
     pub between_nodes: bool,
-    /// Of a message (s).
+    /// Time of a message (s).
     pub latency: f64,
     /// Bytes that a node sends in a second.
     pub bandwidth: f64,
-    /// What the two calls of all ranks in a step take for each doubling of their number (s).
+    /// Time of the two collective calls of a step for each doubling of the number of ranks (s).
     pub agreement_time: f64,
 }
 
-/// Measures messages; tells them, and writes them to a file if there is one. Collective.
+/// Measures messages; prints the result, and writes it to a file if there is one. Collective.
 ///
 /// # Errors
-/// If there is nobody to talk to, or the file cannot be written.
+/// If ranks are not pairs, or the file cannot be written.
 pub(super) fn run(comm: &Comm, file: Option<&Path>) -> Result<(), String> {
     if comm.size() < 2 || comm.size() % 2 == 1 {
         return Err("messages go between pairs of ranks: start it by mpirun on 2, 4, …".to_owned());
@@ -101,7 +101,7 @@ fn measure(comm: &Comm) -> Messages {
     }
 }
 
-/// The median time (s) of one of so many rounds, the longest of all ranks. Collective.
+/// The median time (s) of one of `rounds` rounds, the longest of all ranks. Collective.
 fn time_of(comm: &Comm, rounds: u32, task: &mut dyn FnMut(usize, u32), bytes: usize) -> f64 {
     task(bytes, rounds);
     let times: Vec<f64> = (0..REPEAT)

@@ -1,4 +1,4 @@
-//! How many neighbours particles have: those of the sums, and those of the lists.
+//! Numbers of neighbours of particles: of the sums, and of the lists.
 
 use comm::Comm;
 use engine::step::Simulation;
@@ -6,7 +6,7 @@ use engine::step::Simulation;
 /// Particles whose neighbours are counted, more or less.
 const SAMPLE: u64 = 500;
 
-/// Numbers that tell of one sampled particle: position (m), smoothing length (m), group, id.
+/// Words of one sampled particle: position (m), smoothing length (m), group, id.
 const WORDS: usize = 6;
 
 /// Mean number of particles and mirror images of the own group within 2h of a particle, itself not
@@ -33,13 +33,13 @@ pub fn list_mean(comm: &Comm, simulation: &Simulation) -> f64 {
     sums[0] as f64 / (sums[1] as f64).max(1.0)
 }
 
-/// This rank's part of the sample, filled up with zeros to the same length on all ranks: a particle
-/// is known by its smoothing length.
+/// This rank's share of the sample, padded with zeros to the same length on all ranks: a particle has
+/// a positive smoothing length.
 fn sampled(comm: &Comm, simulation: &Simulation) -> Vec<u64> {
     let particles = &simulation.particles;
     let mut all = [particles.owned() as u64];
     comm.sum_u64(&mut all);
-    // Ids follow the lattice, so every n-th would be a choice of layers: multiplying by 2^64 over
+    // Ids follow the lattice, so every n-th would be a choice of layers: multiplication by 2^64 over
     // the golden ratio scatters them evenly over all numbers.
     let limit = (u64::MAX / all[0].max(1)).saturating_mul(SAMPLE);
     let mut words = Vec::new();

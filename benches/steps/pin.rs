@@ -1,11 +1,11 @@
-//! Threads, each bound to a core: so that they neither wander nor share one, as they would under
-//! Open MPI's default, which binds all threads of a rank to a single core.
+//! Threads, each bound to a core, so that they neither migrate nor share one as under Open MPI's default,
+//! which binds all threads of a rank to a single core.
 
 use comm::Comm;
 use files::run::say;
 
-/// Starts so many threads on each rank. Each gets a core of its own where this process may use as
-/// many as the ranks of this machine need together; else the launcher's binding stays.
+/// Starts `threads` threads on each rank. Each gets a core of its own if this process may use as many as
+/// the ranks of this machine need together; else the launcher's binding stays.
 ///
 /// # Errors
 /// A message if there are already threads.
@@ -13,7 +13,7 @@ pub fn start_threads(threads: usize, comm: &Comm) -> Result<(), String> {
     let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
     let ranks = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
     let rank = number("OMPI_COMM_WORLD_LOCAL_RANK").unwrap_or_else(|| comm.rank());
-    // None where the system does not tell.
+    // None where the cores are unknown.
     let all = core_affinity::get_core_ids().unwrap_or_default();
     if comm.is_root() && all.len() < threads {
         say::warn(&format!(
@@ -26,7 +26,7 @@ pub fn start_threads(threads: usize, comm: &Comm) -> Result<(), String> {
     } else {
         Vec::new()
     };
-    // What the system refuses stays free.
+    // Threads that the system does not bind stay free.
     if let Some(&core) = cores.first() {
         core_affinity::set_for_current(core);
     }

@@ -11,7 +11,7 @@ use engine::step::Phase;
 use files::output::{OutputError, VERSION, commit, write_json};
 use files::run::say::say;
 
-/// What one case does on one configuration of ranks and threads.
+/// Figures of one case on one configuration of ranks and threads.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Row {
     /// Name of the case.
@@ -44,7 +44,7 @@ pub struct Row {
     pub bytes_sent_per_rank_and_step: f64,
     /// Core time by phase over particle updates (ns).
     pub nanoseconds_by_phase: BTreeMap<String, f64>,
-    /// Counted bytes over particles, by what they are for.
+    /// Counted bytes over particles, by purpose.
     pub bytes_by_part: BTreeMap<String, f64>,
 }
 
@@ -96,7 +96,7 @@ pub(super) fn median(figures: &[f64]) -> f64 {
     0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
 }
 
-/// All figures with what they belong to.
+/// All figures, with program and machine.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Report {
     /// Version of the program.
@@ -107,7 +107,7 @@ pub struct Report {
     pub machine: Machine,
     /// Repetitions of each measurement.
     pub repeat: u32,
-    /// What could not be measured, and why.
+    /// Configurations that could not be measured, with reasons.
     pub skipped: Vec<String>,
     /// The figures.
     pub rows: Vec<Row>,
@@ -178,9 +178,9 @@ impl Report {
         ));
     }
 
-    /// Prints the core time of each phase and the memory of each part: a line for each, a column for
-    /// each configuration.
-    pub fn print_parts(&self) {
+    /// Prints the core time by phase and the memory by purpose: a line for each, a column for each
+    /// configuration.
+    pub fn print_breakdown(&self) {
         let mut case = "";
         for row in &self.rows {
             if row.case != case {
@@ -188,16 +188,16 @@ impl Report {
                 let rows: Vec<&Row> = self.rows.iter().filter(|row| row.case == case).collect();
                 let what = format!("{case}: core time, ns a particle and step");
                 let phases = Phase::ALL.iter().map(|(_, name)| *name);
-                print_parts(&what, &rows, phases, |row| &row.nanoseconds_by_phase);
+                print_breakdown(&what, &rows, phases, |row| &row.nanoseconds_by_phase);
                 let names = rows.iter().flat_map(|row| row.bytes_by_part.keys());
                 let names: BTreeSet<&str> = names.map(String::as_str).collect();
                 let what = format!("{case}: memory, bytes a particle");
-                print_parts(&what, &rows, names, |row| &row.bytes_by_part);
+                print_breakdown(&what, &rows, names, |row| &row.bytes_by_part);
             }
         }
     }
 
-    /// Prints how much of a core's speed is left beside another thread or rank: a line for each
+    /// Prints the speed of a core beside another thread or rank over that of one alone: a line for each
     /// case.
     pub fn print_efficiencies(&self) {
         say("\nefficiency: speed of a core over that of a core by itself");
@@ -234,11 +234,11 @@ impl Report {
 }
 
 /// Figures of some rows, a line for each name, and their sums.
-fn print_parts<'a>(
+fn print_breakdown<'a>(
     what: &str,
     rows: &[&Row],
     names: impl IntoIterator<Item = &'a str>,
-    parts: fn(&Row) -> &BTreeMap<String, f64>,
+    figures_of: fn(&Row) -> &BTreeMap<String, f64>,
 ) {
     let line = |name: &str, figure: &dyn Fn(&Row) -> String| {
         let name = format!("  {:<30}", name.replace('_', " "));
@@ -248,12 +248,12 @@ fn print_parts<'a>(
     say(&format!("\n{what}"));
     line("ranks x threads", &Row::configuration);
     for name in names {
-        let figure = |row: &Row| parts(row).get(name).copied().unwrap_or(0.0);
+        let figure = |row: &Row| figures_of(row).get(name).copied().unwrap_or(0.0);
         if rows.iter().any(|row| figure(row) >= 0.05) {
             line(name, &|row| format!("{:.1}", figure(row)));
         }
     }
     line("all", &|row| {
-        format!("{:.1}", parts(row).values().sum::<f64>())
+        format!("{:.1}", figures_of(row).values().sum::<f64>())
     });
 }

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use files::output::Sheet;
 use files::run::say;
-use files::run::voice::Voice;
+use files::run::verbosity::Verbosity;
 use model::readable::one_line;
 
 /// How a command tells its answer.
@@ -23,7 +23,7 @@ impl Form {
     /// Text is not printed from now on where a document is asked for.
     pub fn begin(self) {
         if self.json {
-            let quiet = Voice {
+            let quiet = Verbosity {
                 quiet: true,
                 json: false,
             };

@@ -12,7 +12,7 @@ use serde_json::json;
 use super::form::Form;
 use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running, standing};
 use files::output::checkpoint::{self, FIELDS};
-use files::output::h5::read::PART;
+use files::output::h5::read::PORTION;
 use files::output::h5::{Array, Content, Element, RowType};
 use files::output::{Block, OutputError, RunFolder, Sheet, read_regular, read_small};
 use files::preflight::memory::in_words;
@@ -94,7 +94,7 @@ fn snapshot(file: &Content, text: &mut Text) -> Result<(), ResultsError> {
     if let Some(schedule) = file.note_if_any(group, "schedule")? {
         text.both("schedule", schedule);
     }
-    if let Some(part) = file.note_if_any(group, PART)? {
+    if let Some(part) = file.note_if_any(group, PORTION)? {
         text.entry("part of the model", &part);
         text.value("part", part);
     }

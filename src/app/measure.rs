@@ -190,7 +190,7 @@ impl Loaded {
         let case = input::parse(&path.display().to_string(), &text, set)?;
         let told = |error: ReadError| wrong(error.to_string());
         let file = SnapshotFile::open(path).map_err(told)?;
-        if let Some(part) = file.part().map_err(told)? {
+        if let Some(part) = file.portion().map_err(told)? {
             return Err(wrong(only_part(&part)));
         }
         let names = file.names().map_err(told)?;

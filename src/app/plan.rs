@@ -224,19 +224,19 @@ fn print_ranks(
     let alone = layout_of(source, (1, Some(1)), 1)?.loads[0];
     let mut all = Vec::new();
     for ranks in args.ladder(source.particles.positions.len()) {
-        let own = layout_of(source, (ranks, None), sharing.ranks_per_node)?;
+        let own = layout_of(source, ranks, None, sharing.ranks_per_node)?;
         for levels in args.levels(&source.case, own.slabs.levels(), ranks) {
             let is_own = levels == own.slabs.levels();
             let layout = if is_own {
                 own.clone()
             } else {
-                layout_of(source, (ranks, Some(levels)), sharing.ranks_per_node)?
+                layout_of(source, ranks, Some(levels), sharing.ranks_per_node)?
             };
             let row = row_of(source, machine, &layout, sharing, &alone);
             let line = table::line(&row, is_own, source.outlook.steps);
             say(&(line + &table::excess(&row, machine)));
             let each = f64::from(args.per_core) * as_number(sharing.threads);
-            let weak = Weak::new(&layout.loads, levels, each, (machine, sharing));
+            let weak = Weak::new(&layout.loads, levels, each, machine, sharing);
             let loads = layout.loads;
             all.push(Planned { loads, row, weak });
         }
@@ -301,11 +301,19 @@ fn machine(path: &Path) -> Result<Machine, String> {
 
 fn layout_of(
     source: &Source,
-    ranks_and_levels: (usize, Option<usize>),
+    ranks: usize,
+    levels: Option<usize>,
     ranks_per_node: usize,
 ) -> Result<Layout, String> {
-    let from = (&source.particles, source.time, &source.outlook);
-    let layout = Layout::new(&source.case, from, ranks_and_levels, ranks_per_node);
+    let layout = Layout::new(
+        &source.case,
+        &source.particles,
+        source.time,
+        &source.outlook,
+        ranks,
+        levels,
+        ranks_per_node,
+    );
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }
 
@@ -318,8 +326,8 @@ fn row_of(
     alone: &Load,
 ) -> Row {
     let costs = Costs::of_case(&source.case);
-    let of = (&source.particles, layout);
-    Row::new(of, (machine, sharing), costs, computing(alone, machine))
+    let work = computing(alone, machine);
+    Row::new(&source.particles, layout, machine, sharing, costs, work)
 }
 
 fn print_files(source: &Source, machine: &Machine) -> Result<Files, String> {

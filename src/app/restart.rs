@@ -55,7 +55,7 @@ pub struct RestartArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RestartArgs) -> u8 {
-    args.common.voice().begin();
+    args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
         if let Err(error) = input::output_and_run_only(&args.set) {
@@ -240,7 +240,7 @@ fn resume(
     let place = found.checkpoint.display().to_string();
     let own = Some(&found.named.folder).filter(|_| found.named.own);
     let (input, set) = (&found.restored.input, &args.set);
-    let settled = saved_case::settle(comm, own, &place, input, set, args.accept_case)?;
+    let settled = saved_case::resolve(comm, own, &place, input, set, args.accept_case)?;
     let case = &settled.case;
     snapshot::quantities(&case.output.fields).map_err(|error| format!("error: {error}"))?;
     if let Some(message) = args.common.shortage(comm, case) {

@@ -48,7 +48,7 @@ pub struct RunArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RunArgs) -> u8 {
-    args.common.voice().begin();
+    args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
         let (path, text) = match read_case(comm, &args.case) {

@@ -8,7 +8,7 @@ use mpi::traits::AsRaw;
 
 use super::virtual_ranks::{Rank, Tag, Ticket};
 use super::waiting::waiting;
-use super::{Comm, Kind, RawComm};
+use super::{Comm, RawComm, Transport};
 
 /// Largest piece of a message: counts are `i32`.
 const PIECE: usize = 1 << 30;
@@ -17,7 +17,7 @@ const SIZE: usize = 8;
 const TAG_SIZE: c_int = 1;
 const TAG_DATA: c_int = 2;
 
-/// The pieces of something of this length that goes in pieces of `most` at most.
+/// Ranges of at most `most` that cover `0..length` in order.
 pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
     let starts = (0..length).step_by(most);
     starts.map(move |start| start..length.min(start.saturating_add(most)))
@@ -33,13 +33,13 @@ pub struct Traffic {
 }
 
 impl Traffic {
-    /// Of telling a peer the size of the next message.
+    /// A message that gives a peer the size of the next one.
     pub const OF_SIZE: Self = Self {
         messages: 1,
         bytes: SIZE as u64,
     };
 
-    /// Of so many bytes to a peer.
+    /// A message of this many bytes to a peer.
     #[must_use]
     pub fn of(bytes: u64) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl AddAssign for Traffic {
 impl Sub for Traffic {
     type Output = Self;
 
-    /// What has been sent since another time.
+    /// Traffic since another time.
     fn sub(self, before: Self) -> Self {
         Self {
             messages: self.messages - before.messages,
@@ -68,7 +68,7 @@ impl Sub for Traffic {
     }
 }
 
-/// Whom messages go to and come from.
+/// A rank that messages go to and come from.
 #[derive(Default)]
 pub struct Peer {
     rank: c_int,
@@ -93,19 +93,19 @@ impl Peer {
 /// perhaps nothing. Buffers are kept from step to step.
 ///
 /// Either [`Exchange::post`] when both sides know the sizes ([`Exchange::expect`]), or
-/// [`Exchange::post_sizes`] first; then [`Exchange::wait`], which waits for what comes in only: a
-/// peer that is still at work holds up nobody who needs nothing from it.
+/// [`Exchange::post_sizes`] first; then [`Exchange::wait`], which waits for incoming messages only: a
+/// peer that is still computing delays no rank that needs nothing from it.
 #[derive(Default)]
 pub struct Exchange {
     peers: Vec<Peer>,
     count: usize,
     receives: Vec<ffi::MPI_Request>,
     sends: Vec<ffi::MPI_Request>,
-    /// In place of both, on a virtual rank: itself, and what will come of which peers.
+    /// In place of both, on a virtual rank: the rank itself, and the messages expected from peers.
     expected: Option<(Rank, Vec<(usize, Ticket)>)>,
     /// Size of the message to and from each peer.
     sizes: Vec<[u64; 2]>,
-    /// What this exchange has sent so far.
+    /// Messages and bytes that this exchange has sent so far.
     pub traffic: Traffic,
 }
 
@@ -167,12 +167,12 @@ impl Exchange {
         &self.peers[..self.count]
     }
 
-    /// Says how many bytes the k-th peer will send.
+    /// Sets the number of bytes that the k-th peer will send.
     pub fn expect(&mut self, k: usize, bytes: usize) {
         self.peers[k].receive.resize(bytes, 0);
     }
 
-    /// Tells all peers the size of their message and learns the size of theirs.
+    /// Exchanges the sizes of messages with all peers.
     ///
     /// # Panics
     /// If a message is larger than memory can be.
@@ -180,10 +180,10 @@ impl Exchange {
         self.sizes.clear();
         let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
         self.sizes.extend(sends.map(|send| [send.len() as u64, 0]));
-        match &comm.kind {
-            Kind::Solo => {}
-            Kind::Mpi(world) => self.swap_sizes_by_mpi(world.as_raw()),
-            Kind::Virtual(rank) => self.swap_sizes_virtually(rank),
+        match &comm.transport {
+            Transport::Solo => {}
+            Transport::Mpi(world) => self.swap_sizes_by_mpi(world.as_raw()),
+            Transport::Virtual(rank) => self.swap_sizes_virtually(rank),
         }
         for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
             let bytes = usize::try_from(size[1]).expect("a size fits memory");
@@ -193,10 +193,10 @@ impl Exchange {
 
     /// Starts all messages; returns at once.
     pub fn post(&mut self, comm: &Comm) {
-        match &comm.kind {
-            Kind::Solo => {}
-            Kind::Mpi(world) => self.post_by_mpi(world.as_raw()),
-            Kind::Virtual(rank) => self.post_virtually(rank),
+        match &comm.transport {
+            Transport::Solo => {}
+            Transport::Mpi(world) => self.post_by_mpi(world.as_raw()),
+            Transport::Virtual(rank) => self.post_virtually(rank),
         }
     }
 
@@ -335,7 +335,7 @@ impl Exchange {
     }
 }
 
-/// Begins a message of so many bytes by a call that takes their count and sets the request.
+/// Begins a message of `bytes` by a call that takes their count and sets the request.
 fn begin(
     bytes: usize,
     call: impl FnOnce(c_int, *mut ffi::MPI_Request) -> c_int,

@@ -1,8 +1,8 @@
-//! What all ranks agree on in a step, in one call.
+//! Reduction of all that ranks agree on in a step, in one call.
 //!
-//! MPI combines words of one kind by one operation. A step wants four: sums, smallest numbers, the first of
-//! some entries, and a set of bits. All of them together are one element of a type of their own, since MPI may cut
-//! a message anywhere between elements, and the operation must know which word is what.
+//! MPI combines words of one type by one operation. A step needs four: sums, minima, the first of some
+//! entries, and a set of bits. All of them together are one element of a type of their own, since MPI may cut
+//! a message anywhere between elements, and the operation must know the meaning of each word.
 
 use std::ffi::{c_int, c_void};
 use std::mem::MaybeUninit;
@@ -11,13 +11,13 @@ use mpi::ffi;
 use mpi::traits::AsRaw;
 
 use super::waiting::waiting;
-use super::{Comm, Kind, RawComm};
+use super::{Comm, RawComm, Transport};
 
-/// Words before the smallest ones: how many there are of all, how many of the smallest, the bits, and
-/// the first entry.
+/// Words before the minima: the number of all words, the number of minima, the bits, and the first entry.
 const HEAD: usize = 6;
 
-/// What ranks join. All ranks have as many sums and smallest numbers. Buffers are kept from step to step.
+/// Values that ranks reduce together. All ranks have as many sums and minima. Buffers are kept from step
+/// to step.
 #[derive(Debug, Default)]
 pub struct Joint {
     /// Become their sums over ranks (wrapping is the caller's concern).
@@ -71,14 +71,14 @@ impl Comm {
             return;
         }
         joint.pack();
-        match &self.kind {
-            Kind::Solo => {}
-            Kind::Mpi(world) => {
+        match &self.transport {
+            Transport::Solo => {}
+            Transport::Mpi(world) => {
                 let mut mine = self.scratch.borrow_mut();
                 mine.clone_from(&joint.words);
                 join_by_mpi(world.as_raw(), &mine, &mut joint.words);
             }
-            Kind::Virtual(rank) => rank.reduce(&mut joint.words, combine),
+            Transport::Virtual(rank) => rank.reduce(&mut joint.words, combine),
         }
         joint.unpack();
     }
@@ -103,7 +103,7 @@ fn combine(all: &mut [u64], mine: &[u64]) {
     }
 }
 
-/// The same as MPI calls it.
+/// [`combine`] with the signature of an MPI operation.
 unsafe extern "C" fn combine_elements(
     mine: *mut c_void,
     all: *mut c_void,
@@ -125,7 +125,7 @@ unsafe extern "C" fn combine_elements(
 fn join_by_mpi(world: RawComm, mine: &[u64], all: &mut [u64]) {
     let length = c_int::try_from(mine.len()).expect("few words");
     // SAFETY: both buffers hold one element of the type, which lives until the call is over, as the
-    // operation does; `combine_elements` has the signature that MPI asks for.
+    // operation does; `combine_elements` has the signature of an MPI operation.
     unsafe {
         let mut element = ffi::RSMPI_DATATYPE_NULL;
         let mut operation = MaybeUninit::uninit();

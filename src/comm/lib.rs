@@ -1,8 +1,8 @@
 //! Messages between ranks: the only module that names MPI.
 //!
 //! MPI is initialised *funneled*: every call comes from the main thread. A [`Comm`] without it
-//! ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use; so are
-//! [`virtual_ranks`], many ranks in one process.
+//! ([`Comm::solo`]) is a single rank that never touches MPI, for tests and library use;
+//! [`virtual_ranks`] are many such ranks in one process.
 
 mod exchange;
 mod joint;
@@ -40,7 +40,7 @@ impl Session {
         if threading < mpi::Threading::Funneled {
             return None;
         }
-        let comm = Comm::of(Kind::Mpi(universe.world()));
+        let comm = Comm::of(Transport::Mpi(universe.world()));
         Some((
             Self {
                 _universe: universe,
@@ -53,9 +53,9 @@ impl Session {
 /// Name and version of the MPI library, which need not be started.
 #[must_use]
 pub fn library() -> String {
-    let told = mpi::environment::library_version().unwrap_or_default();
-    // Some tell on several lines, or go on with how they were built.
-    let first = told.lines().next().unwrap_or_default();
+    let version = mpi::environment::library_version().unwrap_or_default();
+    // Some versions have several lines, or continue with build options.
+    let first = version.lines().next().unwrap_or_default();
     let first = first.split(',').next().unwrap_or_default();
     let words: Vec<&str> = first.split_whitespace().collect();
     words.join(" ")
@@ -63,12 +63,12 @@ pub fn library() -> String {
 
 /// A group of ranks.
 pub struct Comm {
-    kind: Kind,
+    transport: Transport,
     scratch: RefCell<Vec<u64>>,
 }
 
-/// What carries messages.
-enum Kind {
+/// The carrier of messages.
+enum Transport {
     /// Nothing: there is one rank.
     Solo,
     Mpi(SimpleCommunicator),
@@ -76,9 +76,9 @@ enum Kind {
 }
 
 impl Comm {
-    fn of(kind: Kind) -> Self {
+    fn of(transport: Transport) -> Self {
         Self {
-            kind,
+            transport,
             scratch: RefCell::default(),
         }
     }
@@ -86,11 +86,11 @@ impl Comm {
     /// One rank by itself, without MPI.
     #[must_use]
     pub fn solo() -> Self {
-        Self::of(Kind::Solo)
+        Self::of(Transport::Solo)
     }
 
     fn on_virtual_rank(rank: Rank) -> Self {
-        Self::of(Kind::Virtual(rank))
+        Self::of(Transport::Virtual(rank))
     }
 
     /// Some of the ranks by themselves, numbered from zero; this one is among them, and all of them
@@ -101,40 +101,40 @@ impl Comm {
     #[must_use]
     pub fn among(&self, members: Range<usize>) -> Self {
         assert!(members.contains(&self.rank()), "a rank of {members:?}");
-        Self::of(match &self.kind {
-            Kind::Solo => Kind::Solo,
-            Kind::Mpi(world) => {
+        Self::of(match &self.transport {
+            Transport::Solo => Transport::Solo,
+            Transport::Mpi(world) => {
                 let number = |rank| i32::try_from(rank).expect("a rank fits an int");
                 let numbers: Vec<i32> = members.map(number).collect();
                 let group = world.group().include(&numbers);
-                let part = waiting(|| world.split_by_subgroup(&group));
-                Kind::Mpi(part.expect("this rank is among them"))
+                let subgroup = waiting(|| world.split_by_subgroup(&group));
+                Transport::Mpi(subgroup.expect("this rank is among them"))
             }
-            Kind::Virtual(rank) => Kind::Virtual(rank.among(&members)),
+            Transport::Virtual(rank) => Transport::Virtual(rank.among(&members)),
         })
     }
 
     /// This rank's number.
     #[must_use]
     pub fn rank(&self) -> usize {
-        match &self.kind {
-            Kind::Solo => 0,
-            Kind::Mpi(world) => usize::try_from(world.rank()).unwrap_or(0),
-            Kind::Virtual(rank) => rank.number(),
+        match &self.transport {
+            Transport::Solo => 0,
+            Transport::Mpi(world) => usize::try_from(world.rank()).unwrap_or(0),
+            Transport::Virtual(rank) => rank.number(),
         }
     }
 
     /// Number of ranks.
     #[must_use]
     pub fn size(&self) -> usize {
-        match &self.kind {
-            Kind::Solo => 1,
-            Kind::Mpi(world) => usize::try_from(world.size()).unwrap_or(1),
-            Kind::Virtual(rank) => rank.size(),
+        match &self.transport {
+            Transport::Solo => 1,
+            Transport::Mpi(world) => usize::try_from(world.size()).unwrap_or(1),
+            Transport::Virtual(rank) => rank.size(),
         }
     }
 
-    /// Whether this is rank 0, which prints.
+    /// Returns true on rank 0, which prints.
     #[must_use]
     pub fn is_root(&self) -> bool {
         self.rank() == 0
@@ -143,35 +143,35 @@ impl Comm {
     /// The handle for parallel HDF5; `None` without MPI, where one rank alone may write.
     #[must_use]
     pub fn raw(&self) -> Option<RawComm> {
-        match &self.kind {
-            Kind::Mpi(world) => Some(world.as_raw()),
-            Kind::Solo | Kind::Virtual(_) => None,
+        match &self.transport {
+            Transport::Mpi(world) => Some(world.as_raw()),
+            Transport::Solo | Transport::Virtual(_) => None,
         }
     }
 
-    /// What this rank has spent so far, if it is a virtual one.
+    /// The time and messages of this rank so far, if it is a virtual one.
     #[must_use]
     pub fn virtual_time(&self) -> Option<VirtualTime> {
-        match &self.kind {
-            Kind::Virtual(_) => Some(Rank::time()),
-            Kind::Solo | Kind::Mpi(_) => None,
+        match &self.transport {
+            Transport::Virtual(_) => Some(Rank::time()),
+            Transport::Solo | Transport::Mpi(_) => None,
         }
     }
 
-    /// Lets the clock of a virtual rank go on by seconds of computing, where they are
-    /// [told](Computing::Told). Does nothing else.
+    /// Advances the clock of a virtual rank by seconds of computing, where they are
+    /// [reported](Computing::Reported). Does nothing else.
     pub fn compute(&self, seconds: f64) {
-        if let Kind::Virtual(rank) = &self.kind {
+        if let Transport::Virtual(rank) = &self.transport {
             rank.compute(seconds);
         }
     }
 
     /// Waits for all ranks.
     pub fn barrier(&self) {
-        match &self.kind {
-            Kind::Solo => {}
-            Kind::Mpi(world) => waiting(|| world.barrier()),
-            Kind::Virtual(rank) => rank.barrier(),
+        match &self.transport {
+            Transport::Solo => {}
+            Transport::Mpi(world) => waiting(|| world.barrier()),
+            Transport::Virtual(rank) => rank.barrier(),
         }
     }
 
@@ -211,7 +211,7 @@ impl Comm {
         values[0]
     }
 
-    /// Whether any rank says yes.
+    /// Returns true on every rank if `yes` is true on any.
     #[must_use]
     pub fn any(&self, yes: bool) -> bool {
         let mut values = [u64::from(yes)];
@@ -222,20 +222,22 @@ impl Comm {
     /// Joins every rank's `values` (the same length everywhere) in rank order into `all`.
     pub fn all_gather_u64(&self, values: &[u64], all: &mut Vec<u64>) {
         all.resize(values.len() * self.size(), 0);
-        match &self.kind {
-            Kind::Solo => all.copy_from_slice(values),
-            Kind::Mpi(world) => waiting(|| world.all_gather_into(values, all.as_mut_slice())),
-            Kind::Virtual(rank) => rank.all_gather(values, all),
+        match &self.transport {
+            Transport::Solo => all.copy_from_slice(values),
+            Transport::Mpi(world) => waiting(|| world.all_gather_into(values, all.as_mut_slice())),
+            Transport::Virtual(rank) => rank.all_gather(values, all),
         }
     }
 
     /// Sends `sends[r]` to rank r, receives what rank r sent here in `receives[r]`.
     pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
         receives.resize(self.size(), 0);
-        match &self.kind {
-            Kind::Solo => receives.copy_from_slice(sends),
-            Kind::Mpi(world) => waiting(|| world.all_to_all_into(sends, receives.as_mut_slice())),
-            Kind::Virtual(rank) => rank.all_to_all(sends, receives),
+        match &self.transport {
+            Transport::Solo => receives.copy_from_slice(sends),
+            Transport::Mpi(world) => {
+                waiting(|| world.all_to_all_into(sends, receives.as_mut_slice()))
+            }
+            Transport::Virtual(rank) => rank.all_to_all(sends, receives),
         }
     }
 
@@ -249,10 +251,10 @@ impl Comm {
     /// # Panics
     /// If there is no such rank.
     pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
-        match &self.kind {
-            Kind::Solo => assert_eq!(from, 0, "there is one rank"),
-            Kind::Mpi(world) => broadcast_by_mpi(world, from, bytes),
-            Kind::Virtual(rank) => rank.broadcast(from, bytes),
+        match &self.transport {
+            Transport::Solo => assert_eq!(from, 0, "there is one rank"),
+            Transport::Mpi(world) => broadcast_by_mpi(world, from, bytes),
+            Transport::Virtual(rank) => rank.broadcast(from, bytes),
         }
     }
 
@@ -265,9 +267,9 @@ impl Comm {
         if self.size() == 1 {
             return;
         }
-        match &self.kind {
-            Kind::Solo => {}
-            Kind::Mpi(world) => {
+        match &self.transport {
+            Transport::Solo => {}
+            Transport::Mpi(world) => {
                 let mut scratch = self.scratch.borrow_mut();
                 let words = size_of_val(values).div_ceil(8);
                 if scratch.len() < words {
@@ -277,7 +279,7 @@ impl Comm {
                 mine.copy_from_slice(values);
                 waiting(|| world.all_reduce_into(&*mine, values, operation));
             }
-            Kind::Virtual(rank) => {
+            Transport::Virtual(rank) => {
                 rank.reduce(bytemuck::cast_slice_mut(values), |all, mine| {
                     for (all, &mine) in all.iter_mut().zip(mine) {
                         *all = bytemuck::cast(combine(bytemuck::cast(*all), bytemuck::cast(mine)));
@@ -298,13 +300,13 @@ fn broadcast_by_mpi(world: &SimpleCommunicator, from: usize, bytes: &mut Vec<u8>
     }
 }
 
-/// Ends all ranks of a running MPI job from wherever the process stands, as a panic must: without
-/// this a panic unwinds into `MPI_Finalize` and the job hangs. Does nothing outside MPI.
-pub fn abort_job(code: i32) {
+/// Ends all ranks of a running MPI job at once, as a panic must: without this a panic unwinds into
+/// `MPI_Finalize` and the job hangs. Does nothing outside MPI.
+pub fn abort_job(exit_code: i32) {
     if mpi::is_initialized() {
         // SAFETY: MPI is initialised; `MPI_Abort` takes any live communicator and does not return.
         unsafe {
-            ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, code);
+            ffi::MPI_Abort(ffi::RSMPI_COMM_WORLD, exit_code);
         }
     }
 }

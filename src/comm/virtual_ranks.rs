@@ -1,13 +1,13 @@
-//! Virtual ranks: the ranks of one program as threads of one process, without MPI, on a machine that
-//! is thought of.
+//! Virtual ranks: the ranks of one program as threads of one process, without MPI, on a model of a
+//! machine.
 //!
-//! They run the code that real ranks run, with messages as long as theirs, a thousand of them and
-//! more on a few cores. What the network of that machine would cost is counted by a
-//! [clock](VirtualTime) of each rank; how long the threads really take means nothing.
+//! They run the code of real ranks with messages of the same length, a thousand ranks and more on a few
+//! cores. A [clock](VirtualTime) of each rank counts the cost of that machine's network; the time that
+//! the threads really take means nothing.
 //!
-//! A rank is its thread: what it computes must stay there if it is to be told from the work of
-//! others. So a task that uses rayon first builds a pool of one thread, its own, with
-//! `use_current_thread`. Files are not for virtual ranks: HDF5 would need MPI.
+//! A rank is its thread: its work must stay there to be distinguished from that of others. So a task that
+//! uses rayon first builds a pool of one thread, its own, with `use_current_thread`. Virtual ranks have no
+//! files: HDF5 would need MPI.
 
 mod clock;
 mod rank;
@@ -30,11 +30,11 @@ use world::{Abandoned, World};
 /// The machine that virtual ranks run on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Machine {
-    /// From the end of a message at the sender to its end at the receiver (s).
+    /// Time from the end of a message at the sender to its end at the receiver (s).
     pub latency: f64,
-    /// Of the messages of a rank, which leave one after the other (bytes/s).
+    /// Bandwidth of the messages of a rank, which leave one after the other (bytes/s).
     pub bandwidth: f64,
-    /// How long ranks compute.
+    /// Source of the time that ranks compute.
     pub computing: Computing,
 }
 
@@ -43,25 +43,24 @@ impl Machine {
     pub const IDEAL: Self = Self {
         latency: 0.0,
         bandwidth: f64::INFINITY,
-        computing: Computing::Told,
+        computing: Computing::Reported,
     };
 }
 
-/// Where the clock of a virtual rank has the time from that it computes.
+/// Source of the computing time on the clock of a virtual rank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Computing {
     /// The processor time of the rank's thread between calls of this module. Threads that share
     /// a core drive each other's data from its cache, which counts.
     Measured,
-    /// What [`Comm::compute`] is told, and nothing else: the same in every run.
-    Told,
+    /// The seconds given to [`Comm::compute`], and nothing else: the same in every run.
+    Reported,
 }
 
-/// Stack of a rank (bytes), as large as that of a process's main thread. What is never touched takes
-/// no memory.
+/// Stack of a rank (bytes), as large as that of a process's main thread. Untouched pages take no memory.
 const STACK: usize = 8 << 20;
 
-/// Runs a task on so many virtual ranks at once and gives what it returns, by rank.
+/// Runs a task on a number of virtual ranks at once; returns its results by rank.
 ///
 /// # Panics
 /// If the task panics on a rank, which ends all others where they wait next; if ranks wait for each

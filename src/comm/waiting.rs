@@ -1,7 +1,7 @@
-//! How long this rank has waited for others, by the clock.
+//! Time that this rank has waited for others.
 //!
-//! Every call of this room that returns only when other ranks have come as far goes through
-//! [`waiting`]: so a rank's own work can be told from its waiting wherever the call stands.
+//! Every call of this crate that returns only when other ranks have come as far goes through
+//! [`waiting`], which separates a rank's own work from its waiting.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -9,12 +9,12 @@ use std::time::{Duration, Instant};
 use super::virtual_ranks;
 
 thread_local! {
-    /// Of this thread: MPI is on the main thread alone.
+    /// Waiting of this thread: MPI is on the main thread alone.
     static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };
 }
 
-/// How long calls of this room have waited for other ranks since the thread began. On a virtual
-/// rank it is all time that the rank has not computed, as its clock counts it.
+/// Time that calls of this crate have waited for other ranks since the thread began. On a virtual
+/// rank it is all time that the rank has not computed by its clock.
 #[must_use]
 pub fn waited() -> Duration {
     virtual_ranks::waited().unwrap_or_else(|| WAITED.get())

@@ -39,7 +39,7 @@ pub struct Bar {
     pub velocity: f64,
 }
 
-/// What holds an outer end of the row.
+/// Boundary condition of an outer end of the row.
 #[derive(Debug, Clone, PartialEq)]
 pub enum End {
     /// No stress.
@@ -54,11 +54,11 @@ pub enum End {
 pub struct Row {
     /// The bars.
     pub bars: Vec<Bar>,
-    /// What holds the outer ends, left and right.
+    /// Boundary conditions of the outer ends, left and right.
     pub ends: [End; 2],
 }
 
-/// What happens next.
+/// The next event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Event {
     /// A front of a bar meets the next one.
@@ -217,7 +217,7 @@ impl Waves {
         }
     }
 
-    /// Goes on to a time without event.
+    /// Advances to a time without event.
     fn advance(&mut self, time: f64) {
         let wait = time - self.time;
         for joint in 0..self.gaps.len() {
@@ -248,7 +248,7 @@ impl Waves {
         let at = strand.fronts[front].at;
         let mut waves = Wave::new(&medium, left, stretch, 1.0, self.step, at);
         let other = Wave::new(&medium, right, stretch, -1.0, self.step, at);
-        // From left to right; the state between the waves stands once, or is that of a side
+        // From left to right; the state between the waves is listed once, or is that of a side
         // which has no wave.
         if other.fronts.is_empty() {
             waves.states.pop();

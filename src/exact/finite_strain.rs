@@ -2,7 +2,7 @@
 //! the release fans behind them, in closed form.
 //!
 //! With the stretch `λ = ρ₀/ρ` the stress along the bar is a function of λ alone, since uniaxial
-//! strain does not rotate and neither law knows heat:
+//! strain does not rotate and neither law includes heat:
 //!
 //! | form | σ(λ), G from `dS/dt = 2G dev D` | C² = σ′/ρ₀ | L(λ) = ∫₁ C dλ |
 //! |---|---|---|---|
@@ -27,7 +27,7 @@ pub struct Medium {
     pub bulk_modulus: f64,
     /// Shear modulus G (Pa).
     pub shear_modulus: f64,
-    /// How the pressure follows the density.
+    /// Form of the pressure as a function of density.
     pub form: LinearForm,
 }
 

@@ -29,10 +29,10 @@ pub fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The state of a material at a place, in one dimension.
+/// The state of a material at a position, in one dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Where it is now (m).
+    /// Current position (m).
     pub position: f64,
     /// Velocity (m/s).
     pub velocity: f64,
@@ -60,6 +60,6 @@ impl Sample {
     }
 }
 
-/// Samples along a coordinate, a line for each connected stretch of material; two at one place
+/// Samples along a coordinate, a line for each connected stretch of material; two at one position
 /// are the sides of a jump.
 pub type Profile = Vec<Vec<Sample>>;

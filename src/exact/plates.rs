@@ -16,10 +16,10 @@ pub struct Plate {
     pub velocity: f64,
 }
 
-/// What the profile of two plates cannot show.
+/// The profile of two plates is unknown: a release wave runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Released {
-    /// When the first shock has reached a free face (s).
+    /// Time at which the first shock has reached a free face (s).
     pub since: f64,
 }
 
@@ -69,8 +69,8 @@ pub fn profile([left, right]: [&Plate; 2], t: f64) -> Result<Profile, Released> 
         });
     }
     let velocity = right.velocity + result.interface_velocity;
-    let place = left.left + left.length + left.velocity * meet;
-    let at = |speed: f64| place + speed * (t - meet);
+    let interface = left.left + left.length + left.velocity * meet;
+    let at = |speed: f64| interface + speed * (t - meet);
     let shocked = |shock: &Shock, position: f64| Sample {
         position,
         velocity,

@@ -176,7 +176,7 @@ fn shock_constants(gamma: f64, side: &Gas) -> [f64; 2] {
     [a, (gamma - 1.0) / (gamma + 1.0) * side.pressure]
 }
 
-/// How much a wave to pressure `p` (Pa) changes the velocity of a side (m/s), Toro's eqs. 4.6
+/// Change of velocity of a side (m/s) by a wave to pressure `p` (Pa), Toro's eqs. 4.6
 /// and 4.7.
 fn velocity_change(gamma: f64, side: &Gas, p: f64) -> f64 {
     if p > side.pressure {

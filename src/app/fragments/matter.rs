@@ -152,7 +152,7 @@ impl Loaded {
             .names()
             .map_err(|error| wrong(path, error.to_string()))?;
         let reader = Reader { path, file, names };
-        if let Some(part) = reader.told(reader.file.part())? {
+        if let Some(part) = reader.told(reader.file.portion())? {
             return Err(reader.wrong(only_part(&part)));
         }
         for field in ["mass", "velocity"] {

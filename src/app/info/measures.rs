@@ -264,8 +264,8 @@ mod tests {
         for step in 0..3_u32 {
             for gauge in 0..2 {
                 let pressure = f64::from(10 * step + gauge);
-                let at = (u64::from(step), f64::from(step));
-                records.add(at, gauge, std::iter::once(pressure));
+                let time = f64::from(step);
+                records.add(step.into(), time, gauge, std::iter::once(pressure));
             }
         }
         records.write().unwrap();

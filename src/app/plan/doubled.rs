@@ -25,7 +25,7 @@ pub fn print(args: &PlanArgs, machine: &Machine, alone: &Load, all: &[Planned]) 
     let efficiencies = |machine: &Machine| {
         let time = step_time(&planned.loads, machine, sharing).all;
         let strong = computing(alone, machine) / (time * cores);
-        let weak = Weak::of_refined(&fine, each, (machine, sharing)).efficiency;
+        let weak = Weak::of_refined(&fine, each, machine, sharing).efficiency;
         format!("{strong:.3}  {weak:.3}")
     };
     say(&format!("  {:<24}{}", "as told", efficiencies(machine)));

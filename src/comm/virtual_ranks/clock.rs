@@ -9,7 +9,7 @@ thread_local! {
     static CLOCK: Cell<Option<Clock>> = const { Cell::new(None) };
 }
 
-/// What a virtual rank has spent so far.
+/// Time and messages of a virtual rank so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VirtualTime {
     /// Seconds since the start: [`Self::computing`] and [`Self::waiting`].
@@ -23,7 +23,7 @@ pub struct VirtualTime {
     pub messages: u64,
     /// Bytes sent to peers.
     pub bytes: u64,
-    /// Calls that all ranks take part in.
+    /// Collective calls.
     pub collectives: u64,
 }
 
@@ -32,9 +32,9 @@ pub struct VirtualTime {
 pub struct Clock {
     computing: Computing,
     time: VirtualTime,
-    /// When the last of the own messages has left (s).
+    /// Time at which the last of the own messages has left (s).
     sent: f64,
-    /// When the thread began, and its processor time when it computed last.
+    /// Start of the thread, and its processor time when it computed last.
     began: Instant,
     processor: Duration,
 }
@@ -51,8 +51,8 @@ impl Clock {
         }));
     }
 
-    /// Books what this thread has computed, lets a call of this module read and set the clock, and
-    /// leaves the processor time of that call out. Gives what the call returns.
+    /// Adds the time that this thread has computed, lets a call of this module read and set the clock,
+    /// and leaves out the processor time of that call. Returns the result of the call.
     ///
     /// # Panics
     /// If the thread has no clock.
@@ -75,18 +75,18 @@ impl Clock {
         Some(clock)
     }
 
-    /// Goes on by so many seconds of computing.
+    /// Advances by seconds of computing.
     pub fn compute(&mut self, seconds: f64) {
         self.time.computing += seconds;
         self.time.now += seconds;
     }
 
-    /// What was spent so far.
+    /// Time and messages so far.
     pub fn time(&self) -> VirtualTime {
         self.time
     }
 
-    /// Goes on to a time (s) if that is later: the rank waits.
+    /// Advances to a time (s) if that is later: the rank waits.
     pub fn wait(&mut self, until: f64) {
         if until > self.time.now {
             self.time.waiting += until - self.time.now;
@@ -94,13 +94,13 @@ impl Clock {
         }
     }
 
-    /// Books a call of all ranks.
+    /// Counts a collective call.
     pub fn count_collective(&mut self) {
         self.time.collectives += 1;
     }
 
-    /// Sends so many messages of so many bytes together, after what was sent before. Gives the time
-    /// (s) when all has left.
+    /// Sends `messages` of `bytes` together, after what was sent before. Returns the time (s) at which all
+    /// have left.
     pub fn send(&mut self, messages: u64, bytes: u64, bandwidth: f64) -> f64 {
         self.time.messages += messages;
         self.time.bytes += bytes;
@@ -111,13 +111,13 @@ impl Clock {
     }
 }
 
-/// How long this thread, if it is a virtual rank, has not computed: it has waited for others or for a
-/// core, which both say nothing of its work. Where computing is told it is all time: no clock has a say then.
+/// Time that this thread, if it is a virtual rank, has waited for others or for a core. Where computing
+/// time is reported it is all time.
 pub fn waited() -> Option<Duration> {
     let clock = Clock::read()?;
     let all = clock.began.elapsed();
     Some(match clock.computing {
-        Computing::Told => all,
+        Computing::Reported => all,
         Computing::Measured => {
             let computing = Duration::try_from_secs_f64(clock.time.computing);
             all.saturating_sub(computing.unwrap_or(Duration::MAX))

@@ -1,6 +1,6 @@
-//! One virtual rank: its messages and collective calls, and what they cost it.
+//! One virtual rank: its messages and collective calls, and their costs.
 //!
-//! Costs of collective calls are those of the usual trees (Thakur, Rabenseifner & Gropp 2005,
+//! Costs of collective calls are those of binary trees (Thakur, Rabenseifner & Gropp 2005,
 //! doi:10.1177/1094342005051521).
 
 use std::ops::Range;
@@ -48,24 +48,24 @@ impl Rank {
         self.number
     }
 
-    /// How many there are.
+    /// Number of ranks.
     pub fn size(&self) -> usize {
         self.group.size
     }
 
-    /// What it has spent so far.
+    /// Its time and messages so far.
     pub fn time() -> VirtualTime {
         Clock::with(|clock| clock.time())
     }
 
-    /// Books seconds of computing, where they are told.
+    /// Adds seconds of computing, where they are reported.
     pub fn compute(&self, seconds: f64) {
-        if self.machine.computing == Computing::Told {
+        if self.machine.computing == Computing::Reported {
             Clock::with(|clock| clock.compute(seconds));
         }
     }
 
-    /// Sends bytes, which go in so many messages; returns at once.
+    /// Sends bytes in `messages` messages; returns at once.
     pub fn send(&self, to: usize, tag: Tag, bytes: &[u8], messages: u64) {
         Clock::with(|clock| {
             let left = clock.send(messages, bytes.len() as u64, self.machine.bandwidth);
@@ -73,13 +73,13 @@ impl Rank {
                 bytes: bytes.to_vec(),
                 arrival: left + self.machine.latency,
             };
-            self.world.send(self.group, (self.number, to, tag), letter);
+            self.world.send(self.group, self.number, to, tag, letter);
         });
     }
 
     /// Begins to receive the next message of a rank, of those that were not begun yet.
     pub fn expect(&self, from: usize, tag: Tag) -> Ticket {
-        Clock::with(|_| self.world.expect(self.group, (self.number, from, tag)))
+        Clock::with(|_| self.world.expect(self.group, self.number, from, tag))
     }
 
     /// Waits for a message.
@@ -135,7 +135,7 @@ impl Rank {
         }
     }
 
-    /// Gives all ranks the bytes of one, after their number.
+    /// Sends all ranks the bytes of one, after their number.
     pub fn broadcast(&self, from: usize, bytes: &mut Vec<u8>) {
         let is_sender = from == self.number;
         let cost = if is_sender {
@@ -159,19 +159,19 @@ impl Rank {
         }
     }
 
-    /// Meets all ranks, each of which adds to one list of words; gives it when all have. The clock
-    /// goes on to the last one's arrival and the largest cost (s) that any of them knows of.
+    /// Meets all ranks, each of which adds to one list of words; returns it when all have. The clock
+    /// advances to the last arrival plus the largest cost (s) that any of them gives.
     fn meet(&self, cost: f64, add: impl FnOnce(&mut Vec<u64>)) -> Arc<Vec<u64>> {
         Clock::with(|clock| {
             let now = clock.time().now;
-            let (words, end) = self.world.meet(self.group, self.number, (now, cost), add);
+            let (words, end) = self.world.meet(self.group, self.number, now, cost, add);
             clock.count_collective();
             clock.wait(end);
             words
         })
     }
 
-    /// Seconds that so many messages and bytes take from rank to rank up or down a binary tree.
+    /// Seconds that messages and bytes take from rank to rank up or down a binary tree.
     fn tree(&self, messages: f64, bytes: f64) -> f64 {
         let levels = f64::from(self.size().next_power_of_two().trailing_zeros());
         levels * (messages * self.machine.latency + bytes / self.machine.bandwidth)

@@ -1,10 +1,10 @@
-//! What virtual ranks share: messages under way, and where they meet.
+//! State shared by virtual ranks: messages under way, and collective calls.
 
 use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// What messages between two ranks are told apart by.
+/// Purpose of a message, which distinguishes messages between two ranks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tag {
     /// The size of another.
@@ -18,7 +18,7 @@ pub enum Tag {
 pub struct Group {
     /// The first of them, as the world numbers it.
     pub first: usize,
-    /// How many.
+    /// Number of ranks.
     pub size: usize,
 }
 
@@ -35,21 +35,21 @@ pub struct Ticket {
     pub number: u64,
 }
 
-/// A message, and when it is there (s).
+/// A message on its way.
 pub struct Letter {
-    /// What it says.
+    /// The payload.
     pub bytes: Vec<u8>,
-    /// The time.
+    /// Time of arrival (s).
     pub arrival: f64,
 }
 
-/// What a rank ends with that another one's trouble ends.
+/// Panic payload of a rank that ends because another one failed.
 pub struct Abandoned;
 
 /// All ranks.
 pub struct World {
     state: Mutex<State>,
-    /// For each rank, that what it waits for has come.
+    /// For each rank, notified when its message or meeting is there.
     calls: Vec<Condvar>,
 }
 
@@ -58,16 +58,16 @@ struct State {
     meetings: BTreeMap<Group, Meeting>,
     /// Ranks that neither wait nor have ended.
     running: usize,
-    /// Whether a rank met trouble, which ends all.
+    /// Set when a rank has failed, which ends all.
     is_over: bool,
 }
 
-/// What one rank has to do with others.
+/// Messages to one rank.
 #[derive(Default)]
 struct Mailbox {
-    /// Messages that nobody has received yet.
+    /// Messages not received yet.
     letters: BTreeMap<Ticket, Letter>,
-    /// How many messages were sent here, and how many are expected or received.
+    /// Numbers of messages that were sent here, and of those expected or received.
     sent: BTreeMap<(Group, usize, Tag), u64>,
     expected: BTreeMap<(Group, usize, Tag), u64>,
     waits: Option<Awaited>,
@@ -84,16 +84,15 @@ enum Awaited {
 struct Meeting {
     arrived: usize,
     words: Vec<u64>,
-    /// When the last one came, and what the call costs (s).
+    /// Time of the last arrival, and cost of the call (s).
     latest: f64,
     cost: f64,
-    /// Of the last call that all have come to: its words, and its end (s). All read it before any
-    /// of them can end the next.
+    /// Words and end (s) of the last completed call. All read it before any of them can end the next.
     done: (Arc<Vec<u64>>, f64),
 }
 
 impl World {
-    /// So many ranks, all of them running.
+    /// A number of ranks, all of them running.
     pub fn new(ranks: usize) -> Self {
         Self {
             state: Mutex::new(State {
@@ -107,7 +106,7 @@ impl World {
     }
 
     /// Puts a message into the mailbox of its receiver.
-    pub fn send(&self, group: Group, (from, to, tag): (usize, usize, Tag), letter: Letter) {
+    pub fn send(&self, group: Group, from: usize, to: usize, tag: Tag, letter: Letter) {
         let to = group.first + to;
         let mut state = self.enter();
         let mailbox = &mut state.ranks[to];
@@ -119,7 +118,7 @@ impl World {
     }
 
     /// Numbers the next message that `me` is to receive from a rank.
-    pub fn expect(&self, group: Group, (me, from, tag): (usize, usize, Tag)) -> Ticket {
+    pub fn expect(&self, group: Group, me: usize, from: usize, tag: Tag) -> Ticket {
         let mut state = self.enter();
         let mailbox = &mut state.ranks[group.first + me];
         next(&mut mailbox.expected, (group, from, tag))
@@ -137,13 +136,14 @@ impl World {
         }
     }
 
-    /// Adds this rank's words to those of the others of a group that have come, at a time and with a
-    /// cost (s); waits for all of them. Gives the words and the end (s).
+    /// Adds this rank's words to those of the ranks of a group that have arrived, at a time and with a
+    /// cost (s); waits for all of them. Returns the words and the end (s).
     pub fn meet(
         &self,
         group: Group,
         me: usize,
-        (now, cost): (f64, f64),
+        now: f64,
+        cost: f64,
         add: impl FnOnce(&mut Vec<u64>),
     ) -> (Arc<Vec<u64>>, f64) {
         let me = group.first + me;
@@ -166,7 +166,7 @@ impl World {
         state.meetings[&group].done.clone()
     }
 
-    /// Takes leave of a rank that has nothing more to do.
+    /// Ends a rank that has nothing more to do.
     pub fn end(&self) {
         self.stop_one(&mut self.enter());
     }
@@ -181,7 +181,7 @@ impl World {
         self.calls.iter().for_each(Condvar::notify_one);
     }
 
-    /// Waits until somebody [calls](Self::call).
+    /// Waits for a [call](Self::call).
     fn wait<'a>(
         &'a self,
         mut state: MutexGuard<'a, State>,
@@ -207,7 +207,7 @@ impl World {
         }
     }
 
-    /// Tells a rank that what it waits for has come.
+    /// Wakes a rank whose message or meeting is there.
     fn call(&self, state: &mut State, rank: usize) {
         state.ranks[rank].waits = None;
         state.running += 1;
@@ -223,7 +223,7 @@ impl World {
     }
 }
 
-/// Leaves if the trouble of some rank has ended all, without a word of its own.
+/// Unwinds silently if the failure of some rank has ended all.
 fn going_on(state: MutexGuard<'_, State>) -> MutexGuard<'_, State> {
     if state.is_over {
         drop(state);

@@ -1,4 +1,4 @@
-//! A bar on the way: constant states with fronts between them, and the waves that its ends send.
+//! A bar with waves in it: constant states with fronts between them, and the waves that its ends send.
 
 use crate::finite_strain::Medium;
 use crate::{Sample, bisect};
@@ -8,14 +8,14 @@ pub(super) const SPECK: f64 = 1e-9;
 /// Stretches between which all states lie.
 pub(super) const STRETCHES: [f64; 2] = [1e-3, 1e3];
 
-/// What is between two fronts.
+/// The constant state between two fronts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct State {
     pub(super) velocity: f64,
     pub(super) stretch: f64,
 }
 
-/// Where the state changes.
+/// A jump between two states.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Front {
     /// Distance from the left end in reference coordinates (m).
@@ -26,12 +26,12 @@ pub(super) struct Front {
     pub(super) fan: bool,
 }
 
-/// A bar on the way.
+/// A bar with waves in it.
 #[derive(Debug, Clone)]
 pub(super) struct Strand {
     pub(super) medium: Medium,
     pub(super) length: f64,
-    /// Where the left end is now (m).
+    /// Current position of the left end (m).
     pub(super) left: f64,
     pub(super) fronts: Vec<Front>,
     /// One more than fronts.
@@ -124,10 +124,10 @@ impl Strand {
 
     /// The states and their ends in reference coordinates (m).
     pub(super) fn pieces(&self) -> impl Iterator<Item = (State, [f64; 2])> {
-        let place = |k: usize| self.fronts.get(k).map_or(self.length, |front| front.at);
-        let from = move |k: usize| if k == 0 { 0.0 } else { place(k - 1) };
+        let end = |k: usize| self.fronts.get(k).map_or(self.length, |front| front.at);
+        let from = move |k: usize| if k == 0 { 0.0 } else { end(k - 1) };
         let states = self.states.iter().enumerate();
-        states.map(move |(k, state)| (*state, [from(k), place(k)]))
+        states.map(move |(k, state)| (*state, [from(k), end(k)]))
     }
 
     /// Both ends of each state, and the middle of each step of a fan.

@@ -1,5 +1,5 @@
-//! How a run takes its folder: as a new one, or to go on in it. Nothing of an earlier run is lost
-//! before the new one stands.
+//! Start of a run in its folder, a new one or that of an earlier run. Nothing of an earlier run is lost
+//! before the new one has begun.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,10 +62,11 @@ impl RunFolder {
         Ok(lock)
     }
 
-    /// Takes the folder of a run to go on in it; nothing in it changes. The lock is rank 0's.
+    /// Takes the folder of a run to continue it; nothing in it changes. The lock is rank 0's.
     /// Collective.
     ///
-    /// # Errors [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
+    /// # Errors
+    /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
     /// every rank.
     pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
         let mut lock = None;
@@ -103,10 +104,10 @@ impl RunFolder {
         Ok(folder)
     }
 
-    /// Goes on in the folder of an earlier run from a checkpoint of it, with a resolved input
+    /// Continues in the folder of an earlier run from a checkpoint of it, with a resolved input
     /// unless the one there stays. Checkpoints that were passed over as damaged get another name.
-    /// What the run had written later is set aside until [`Self::forget_set_aside`], for the new
-    /// run writes it again; copies of the tables go there too, which [`super::Table::resume`] cuts.
+    /// Later files of the run are set aside until [`Self::forget_set_aside`], since the new
+    /// run writes them again; copies of the tables go there too, which [`super::Table::resume`] cuts.
     /// Collective.
     ///
     /// # Errors
@@ -123,47 +124,47 @@ impl RunFolder {
         let mut aside = None;
         on_root(comm, || {
             self.make_folders()?;
-            let mut place = SetAside::new(&self.path)?;
+            let mut files = SetAside::new(&self.path)?;
             let moved = self
-                .set_aside(&mut place, step, time, passed_over)
+                .set_aside(&mut files, step, time, passed_over)
                 .and_then(|()| self.begin(step, time, resolved));
             if let Err(error) = moved {
-                place.undo();
+                files.undo();
                 return Err(error);
             }
-            aside = Some(place);
+            aside = Some(files);
             Ok(())
         })?;
         Ok(aside)
     }
 
-    /// Checkpoints first, the newest first of all, so that at any time the newest one that is left
-    /// has all its rows and snapshots.
+    /// Sets later files aside: checkpoints first, the newest first of all, so that at any time the newest
+    /// one left has all its rows and snapshots.
     fn set_aside(
         &self,
-        place: &mut SetAside,
+        aside: &mut SetAside,
         step: u64,
         time: f64,
         passed_over: &[PathBuf],
     ) -> Result<(), OutputError> {
         for path in passed_over {
-            place.rename_as(path, checkpoint::DAMAGED)?;
+            aside.rename_as(path, checkpoint::DAMAGED)?;
         }
         let checkpoints = checkpoint::list(&self.checkpoints())?;
         for (_, path) in checkpoints.iter().rev().filter(|(other, _)| *other > step) {
-            place.take(path)?;
+            aside.take(path)?;
         }
         files::sync_folder(&self.checkpoints())?;
         for name in CHANGED {
-            place.copy(&self.path.join(name))?;
+            aside.copy(&self.path.join(name))?;
         }
         for schedule in self.all_schedules()? {
             let series = self.series_of(schedule.as_deref());
-            place.copy(&series)?;
+            aside.copy(&series)?;
             series::keep_until(&series, time)?;
             for path in self.snapshot_files_of(schedule.as_deref())? {
                 if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
-                    place.take(&path)?;
+                    aside.take(&path)?;
                 }
             }
         }
@@ -173,14 +174,14 @@ impl RunFolder {
             .chain(self.gauge_files()?)
         {
             if other > step {
-                place.take(&path)?;
+                aside.take(&path)?;
             }
         }
         Ok(())
     }
 
-    /// Removes what a restart has set aside, if there is anything: the run has a checkpoint of its
-    /// own. Rank 0's alone.
+    /// Removes the files that restarts have set aside, if any: the run has a checkpoint of its own.
+    /// Rank 0's alone.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -188,15 +189,15 @@ impl RunFolder {
         set_aside::forget(&self.path)
     }
 
-    /// What restarts have set aside, if there is anything.
+    /// The folder of files that restarts have set aside, if there is one.
     #[must_use]
     pub fn set_aside_folder(&self) -> Option<PathBuf> {
         Some(self.path.join(SET_ASIDE)).filter(|path| path.exists())
     }
 
-    /// Says that a run goes on from here.
+    /// Writes the status of a run that begins at a step and time (s), and its resolved input.
     fn begin(&self, step: u64, time: f64, resolved: Option<&str>) -> Result<(), OutputError> {
-        // What has been told of the way to here stays.
+        // The outlook up to here stays.
         let before = self.status().ok().filter(|_| step > 0);
         self.write_status(&Status {
             outlook: before.and_then(|status| status.outlook),
@@ -228,7 +229,7 @@ impl RunFolder {
         }
     }
 
-    /// Whether there is nothing in it but a lock, or what a run has left that was killed at its
+    /// Returns true if there is nothing in it but a lock, or the files of a run that was killed at its
     /// very beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
@@ -239,10 +240,10 @@ impl RunFolder {
         Ok(names.iter().all(is_nothing))
     }
 
-    /// Removes what a run has written, at once: who gives `--force` asks for it. Checkpoints go
-    /// first, each at a stroke and the newest first, so that a restart after a clearing that was
-    /// cut short finds whole ones or none; the status stays until a new one takes its place, so
-    /// that the folder remains one that `--force` clears.
+    /// Removes the files of a run at once, as `--force` demands. Checkpoints go first, each in one
+    /// rename and the newest first, so that a restart after an interrupted clearing finds whole ones or
+    /// none. The status stays until a new one replaces it, so that the folder remains one that
+    /// `--force` clears.
     fn clear(&self) -> Result<(), OutputError> {
         for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
             checkpoint::discard(path)?;
@@ -278,7 +279,7 @@ impl RunFolder {
     }
 }
 
-/// Whether a run wrote this into its folder of snapshots or checkpoints.
+/// Returns true for names that a run writes into its folders of snapshots or checkpoints.
 fn is_ours(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let name = name.trim_end_matches(files::PARTIAL);

@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::h5::{Array, Content, Element, RowType, Writer};
-use super::{Block, Column, OutputError, Sheet, Value, files, settle};
+use super::{Block, Column, OutputError, Sheet, Value, files, publish_or_remove};
 use comm::Comm;
 
 /// The cells of a column.
@@ -32,7 +32,7 @@ impl Cells {
         }
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -89,8 +89,8 @@ pub fn write(
         std::fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
     }
     let temporary = files::partial(path);
-    let written = write_file(&alone, &temporary, (columns, cells), words);
-    settle(&alone, written, &temporary, || {
+    let written = write_file(&alone, &temporary, columns, cells, words);
+    publish_or_remove(&alone, written, &temporary, || {
         files::publish(&temporary, path)
     })
 }
@@ -98,7 +98,8 @@ pub fn write(
 fn write_file(
     comm: &Comm,
     path: &Path,
-    (columns, cells): (&[Column], &[Cells]),
+    columns: &[Column],
+    cells: &[Cells],
     words: &[String],
 ) -> Result<(), OutputError> {
     let mut file = Writer::create(comm, path)?;
@@ -107,7 +108,7 @@ fn write_file(
     file.text("/words", &words.join("\n"))?;
     file.group("/table")?;
     for (column, cells) in columns.iter().zip(cells) {
-        let path = place(&column.name);
+        let path = dataset_path(&column.name);
         let block = Block::even(cells.len() as u64, 0, 1);
         let row = RowType::single(cells.element());
         file.rows(&path, row, block, cells.bytes())?;
@@ -118,11 +119,11 @@ fn write_file(
     file.close()
 }
 
-fn place(name: &str) -> String {
+fn dataset_path(name: &str) -> String {
     format!("/table/{name}")
 }
 
-/// Such a table, open for reading.
+/// A binary table, open for reading.
 #[derive(Debug)]
 pub struct BinaryTable {
     content: Content,
@@ -132,14 +133,14 @@ pub struct BinaryTable {
 }
 
 impl BinaryTable {
-    /// Opens a table, which anybody may have made.
+    /// Opens a table, which is not trusted.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Hdf5`], [`OutputError::Damaged`].
     pub fn open(path: &Path) -> Result<Self, OutputError> {
         let content = Content::open(path)?;
         let names = content.text("/columns")?;
-        let columns = names.lines().map(|name| content.array(&place(name)));
+        let columns = names.lines().map(|name| content.array(&dataset_path(name)));
         let columns: Vec<Array> = columns.collect::<Result<_, _>>()?;
         let words = content.text("/words")?;
         let rows = columns.first().map_or(0, |column| column.rows);
@@ -162,13 +163,13 @@ impl BinaryTable {
         self.rows
     }
 
-    /// What the words of its rows may be.
+    /// The words that its rows refer to.
     #[must_use]
     pub fn words(&self) -> &[String] {
         &self.words
     }
 
-    /// Some of its rows as those of a text, of which all words must be among `only` where this is given.
+    /// A range of its rows as text; only those whose words are all among `only`, if that is given.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`], [`OutputError::Damaged`].
@@ -226,7 +227,7 @@ impl BinaryTable {
             Cells::Counts(cells) => bytemuck::cast_slice_mut(cells),
             Cells::Words(cells) => bytemuck::cast_slice_mut(cells),
         };
-        let path = place(&column.name);
+        let path = dataset_path(&column.name);
         self.content.rows(&path, column.row, block, bytes)?;
         Ok(cells)
     }

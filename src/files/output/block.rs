@@ -1,4 +1,4 @@
-//! Blocks of rows: which rank has which.
+//! Blocks of rows: the share of each rank.
 
 use comm::Comm;
 
@@ -51,7 +51,7 @@ impl Block {
         }
     }
 
-    /// Whether it holds the end of all rows; of none, whether it is `root`'s.
+    /// Returns true if it holds the end of all rows; where there are none, if it is `root`'s.
     #[must_use]
     pub fn closes(self, root: bool) -> bool {
         if self.total == 0 {

@@ -24,7 +24,7 @@ pub(super) fn block_of(size: u64) -> u64 {
     (size / COUNT).clamp(least, most).next_power_of_two()
 }
 
-/// Whether files have blocks of so many bytes.
+/// Returns true if files may have blocks of this many bytes.
 pub(super) fn is_block(bytes: u64) -> bool {
     let [least, most] = BLOCKS;
     bytes.is_power_of_two() && (least..=most).contains(&bytes)
@@ -64,24 +64,24 @@ pub(super) fn of_file(
     Ok(digests.iter().map(hexadecimal).collect())
 }
 
-/// The digest of so many bytes from a place on, in which pieces begin.
+/// The digest of `count` bytes from `start` on, where pieces may begin.
 fn digest_of(file: &File, start: u64, count: u64) -> io::Result<[u8; 32]> {
     let mut piece = Piece::take();
     let mut digest = Sha256::new();
-    let mut place = start;
-    while place < start + count {
-        let length = (start + count - place).min(PIECE as u64);
+    let mut offset = start;
+    while offset < start + count {
+        let length = (start + count - offset).min(PIECE as u64);
         let wanted = usize::try_from(length).unwrap_or(PIECE);
-        let mut there = 0;
-        while there < wanted {
-            let room = &mut piece.blocks(wanted)[there..];
-            match file.read_at(room, place + there as u64)? {
+        let mut filled = 0;
+        while filled < wanted {
+            let rest = &mut piece.blocks(wanted)[filled..];
+            match file.read_at(rest, offset + filled as u64)? {
                 0 => return Err(io::ErrorKind::UnexpectedEof.into()),
-                count => there += count,
+                count => filled += count,
             }
         }
         digest.update(&piece.bytes()[..wanted]);
-        place += length;
+        offset += length;
     }
     piece.keep();
     Ok(digest.finalize().into())

@@ -1,29 +1,29 @@
-//! What can go wrong with results and checkpoints.
+//! Errors of results and checkpoints.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why something could not be written or read back.
+/// An error of writing or reading back.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
     /// The system refused.
     #[error("cannot {action} {}: {source}", path.display())]
     Io {
-        /// What was tried, as a verb.
+        /// The action, as a verb.
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What the system says.
+        /// The message of the system.
         source: io::Error,
     },
     /// HDF5 refused.
     #[error("cannot {action} {}: {reason}", path.display())]
     Hdf5 {
-        /// What was tried, as a verb.
+        /// The action, as a verb.
         action: String,
         /// The file.
         path: PathBuf,
-        /// What HDF5 says.
+        /// The message of HDF5.
         reason: String,
     },
     /// The run folder holds something already.
@@ -56,10 +56,10 @@ pub enum OutputError {
     NoCheckpoint {
         /// The run's folder.
         path: PathBuf,
-        /// Why those that there are could not be read.
+        /// Errors of existing ones.
         passed_over: Vec<String>,
     },
-    /// A checkpoint that stands in no run folder.
+    /// A checkpoint in no run folder.
     #[error(
         "{} is neither a run nor a checkpoint in one; name the run, or a checkpoint and a folder \
          for the results with --out",
@@ -69,12 +69,12 @@ pub enum OutputError {
         /// The checkpoint.
         path: PathBuf,
     },
-    /// A file does not say what it should.
+    /// A file with wrong content.
     #[error("{} is damaged: {what}", path.display())]
     Damaged {
         /// The file or folder.
         path: PathBuf,
-        /// What is wrong, and what to do.
+        /// The damage, and advice.
         what: String,
     },
     /// A checkpoint of another program version.
@@ -91,7 +91,7 @@ pub enum OutputError {
         /// The format number read here.
         known: u64,
     },
-    /// A checkpoint with what this program does not know, or without what it needs.
+    /// A checkpoint with content that this program does not know, or without content that it needs.
     #[error(
         "the checkpoint {} was written by whipple {by}, and this is {}: {what}; restart it with the \
          program that wrote it",
@@ -103,10 +103,10 @@ pub enum OutputError {
         path: PathBuf,
         /// Version and commit that wrote it.
         by: String,
-        /// What is different.
+        /// The difference.
         what: String,
     },
-    /// A run goes on in the folder.
+    /// A run is going on in the folder.
     #[error(
         "the folder {} is in use by {who}: wait for its end, stop it (`touch {}`), or choose another \
          folder with --out; --ignore-lock takes the folder all the same",
@@ -116,7 +116,7 @@ pub enum OutputError {
     Held {
         /// The folder.
         path: PathBuf,
-        /// Who has it.
+        /// The holder.
         who: String,
     },
     /// A run on another host has not closed the folder.
@@ -128,7 +128,7 @@ pub enum OutputError {
     Unclear {
         /// The folder.
         path: PathBuf,
-        /// Who had it.
+        /// The last holder.
         who: String,
         /// This host.
         here: String,
@@ -163,7 +163,7 @@ impl OutputError {
         }
     }
 
-    /// A file that does not say what it should.
+    /// A file with wrong content.
     pub fn damaged(path: &Path, what: impl Into<String>) -> Self {
         Self::Damaged {
             path: path.to_owned(),
@@ -171,21 +171,21 @@ impl OutputError {
         }
     }
 
-    /// Whether a file is not what was written, as against one that cannot be read now or that
-    /// another version wrote. Of the rank that met the error: others hear only its text.
+    /// Returns true if a file is not what was written, as against one that cannot be read now or that
+    /// another version wrote. On the rank that met the error: others receive only its text.
     #[must_use]
     pub fn is_damage(&self) -> bool {
         matches!(self, Self::Damaged { .. })
     }
 
-    /// Whether another version of the program wrote it.
+    /// Returns true if another version of the program wrote it.
     #[must_use]
     pub fn is_other_version(&self) -> bool {
         matches!(self, Self::Format { .. } | Self::OtherVersion { .. })
     }
 }
 
-/// Each on a line of its own, after what stands before them.
+/// Each on a line of its own, with a line end before the first.
 fn lines(reasons: &[String]) -> String {
     [&[String::new()], reasons].concat().join("\n  ")
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::OutputError;
 use crate::input::file;
 
-/// What unfinished files and folders end with.
+/// Ending of unfinished files and folders.
 pub(super) const PARTIAL: &str = ".partial";
 
 /// The name under which a file or folder is written before it is renamed.
@@ -46,10 +46,10 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), OutputError
     write_atomically(path, &text)
 }
 
-/// Bytes of one of our small files at most: the manifest of a checkpoint of 60 TB has so many.
+/// Most bytes of one of our small files: those of the manifest of a checkpoint of 60 TB.
 const SMALL: u64 = 64 << 20;
 
-/// The length of a regular file that anybody may have made and that can be opened.
+/// The length of an untrusted regular file that can be opened.
 ///
 /// # Errors
 /// [`OutputError::Io`].
@@ -61,7 +61,7 @@ pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64
     )
 }
 
-/// Reads a whole file that anybody may have made.
+/// Reads a whole untrusted file.
 ///
 /// # Errors
 /// [`OutputError::Io`].
@@ -73,7 +73,7 @@ pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
     content.map_err(OutputError::io("read", path))
 }
 
-/// Reads one of our small files, which anybody may have made.
+/// Reads one of our small files, which is not trusted.
 ///
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Damaged`] if it is no regular file or not small.
@@ -86,13 +86,13 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
     })
 }
 
-/// Gives a finished file or folder its name, and makes that last.
+/// Gives a finished file or folder its name, and syncs its folder.
 pub(super) fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     fs::rename(temporary, path).map_err(OutputError::io("rename to", path))?;
     sync_folder(path.parent().unwrap_or(Path::new(".")))
 }
 
-/// Makes renames and removals in a folder last through a power cut.
+/// Syncs a folder, so that renames and removals survive a power cut.
 pub(super) fn sync_folder(folder: &Path) -> Result<(), OutputError> {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -104,7 +104,7 @@ pub(super) fn sync_folder(folder: &Path) -> Result<(), OutputError> {
         .map_err(OutputError::io("sync the folder", folder))
 }
 
-/// Makes a file's content last; also tells of writes that the system had put off and that failed.
+/// Syncs a file; also returns the errors of writes that the system had deferred.
 pub(super) fn sync_file(path: &Path) -> Result<(), OutputError> {
     File::open(path)
         .and_then(|file| file.sync_all())
@@ -158,6 +158,7 @@ mod tests {
                 .starts_with("cannot create /nowhere/at/all.partial: ")
         );
     }
+
     #[test]
     fn pipes_and_what_is_too_long_are_refused() {
         let folder = tempfile::tempdir().unwrap();

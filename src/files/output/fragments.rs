@@ -5,7 +5,7 @@ use std::path::Path;
 use super::{Column, OutputError, Table, Value, binary_table, unit_of_model};
 use engine::fragments::{Census, Fragment};
 
-/// The columns of `fragments.csv` in a model of so many dimensions.
+/// The columns of `fragments.csv` in a model of `dimension` dimensions.
 #[must_use]
 pub fn columns(dimension: usize) -> Vec<Column> {
     let column = |(name, unit): (&str, &str)| Column::new(name, unit_of_model(unit, dimension));
@@ -71,7 +71,7 @@ impl FragmentTable {
         }
     }
 
-    /// As its file of text holds it.
+    /// The content of its text file.
     #[must_use]
     pub fn text(&self) -> Vec<u8> {
         Table::whole(&self.columns, &self.rows)
@@ -139,7 +139,7 @@ fn cells(fragment: &Fragment, numbers: [u64; 2]) -> Vec<Value<'static>> {
     row
 }
 
-/// How many fragments are as large as each, itself included, by diameter.
+/// Number of fragments at least as large as each, itself included, by diameter.
 fn ranks_by_size(fragments: &[Fragment]) -> Vec<u64> {
     let mut order: Vec<usize> = (0..fragments.len()).collect();
     let diameters: Vec<f64> = fragments.iter().map(Fragment::diameter).collect();

@@ -1,8 +1,8 @@
-//! What many gauges have read: HDF5 tables of a few megabytes each, one after the other.
+//! Readings of many gauges: HDF5 tables of a few megabytes each, one after the other.
 //!
 //! A file `gauges/step-NNNNNNNN.h5` holds all readings after those of the file before it, up to that
-//! step. It is whole or absent, and one ends with each checkpoint, so that a restart drops those files
-//! that came later and nothing within one.
+//! step. It is whole or absent, and one ends with each checkpoint, so that a restart drops the later
+//! files and nothing within one.
 
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ pub struct GaugeRecords {
 }
 
 impl GaugeRecords {
-    /// Of gauges of some names; the columns are step, time, gauge and numbers.
+    /// For named gauges; the columns are step, time, gauge and numbers.
     #[must_use]
     pub fn new(folder: &RunFolder, columns: Vec<Column>, gauges: Vec<String>) -> Self {
         Self {
@@ -44,13 +44,8 @@ impl GaugeRecords {
         }
     }
 
-    /// Takes what a gauge has read at a step and a time (s).
-    pub fn add(
-        &mut self,
-        (step, time): (u64, f64),
-        gauge: u32,
-        numbers: impl Iterator<Item = f64>,
-    ) {
+    /// Adds the readings of a gauge at a step and a time (s).
+    pub fn add(&mut self, step: u64, time: f64, gauge: u32, numbers: impl Iterator<Item = f64>) {
         self.steps.push(step);
         self.times.push(time);
         self.rows.push(gauge);
@@ -59,7 +54,7 @@ impl GaugeRecords {
         }
     }
 
-    /// Writes what waits if it is much.
+    /// Writes the waiting readings if they are many.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Hdf5`].
@@ -70,7 +65,7 @@ impl GaugeRecords {
         self.write()
     }
 
-    /// Writes all that waits, to the disk.
+    /// Writes all waiting readings.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Hdf5`].
@@ -93,8 +88,8 @@ impl GaugeRecords {
     }
 }
 
-/// All that many gauges of a run have read, as the table that a few would have; of the gauges of some names
-/// alone, if these are given. Nothing if there are no such files.
+/// All readings of a run with many gauges, in the form of `gauges.csv`; of the gauges `only`, if these are
+/// given. `None` if there are no such files.
 ///
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Hdf5`], [`OutputError::Damaged`].
@@ -102,10 +97,10 @@ pub fn sheet(folder: &RunFolder, only: Option<&[String]>) -> Result<Option<Sheet
     let mut all: Option<Sheet> = None;
     for path in files(folder)? {
         let table = BinaryTable::open(&path)?;
-        let part = table.sheet(0..table.rows(), only)?;
+        let sheet = table.sheet(0..table.rows(), only)?;
         match &mut all {
-            None => all = Some(part),
-            Some(all) if all.names == part.names => all.rows.extend(part.rows),
+            None => all = Some(sheet),
+            Some(all) if all.names == sheet.names => all.rows.extend(sheet.rows),
             Some(_) => {
                 let reason = "its columns are others than those of the file before".to_owned();
                 return Err(OutputError::damaged(&path, reason));
@@ -115,7 +110,7 @@ pub fn sheet(folder: &RunFolder, only: Option<&[String]>) -> Result<Option<Sheet
     Ok(all)
 }
 
-/// Its last rows: those of all gauges at the last time and more.
+/// The last rows: those of all gauges at the last time.
 ///
 /// # Errors
 /// As [`sheet`].
@@ -139,8 +134,8 @@ mod tests {
 
     #[test]
     fn readings_come_back_in_order_from_several_files() {
-        let place = tempfile::tempdir().unwrap();
-        let folder = RunFolder::at(place.path());
+        let root = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(root.path());
         assert_eq!(sheet(&folder, None).unwrap(), None);
         let names = ["step", "time", "gauge", "coverage", "pressure"];
         let columns = names.map(|name| Column::new(name, "")).to_vec();
@@ -148,10 +143,10 @@ mod tests {
         let mut records = GaugeRecords::new(&folder, columns, gauges.to_vec());
         records.write().unwrap();
         for step in 0..7_u32 {
-            let now = (step.into(), 0.5 * f64::from(step));
+            let time = 0.5 * f64::from(step);
             for gauge in 0..2 {
                 let numbers = [1.0, f64::from(10 * step + gauge)];
-                records.add(now, gauge, numbers.into_iter());
+                records.add(step.into(), time, gauge, numbers.into_iter());
             }
             records.write_much().unwrap();
             if step == 3 {

@@ -1,4 +1,4 @@
-//! Tables of a run: a row now and then, as comma-separated values.
+//! Tables of a run over time, as comma-separated values.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -78,9 +78,9 @@ impl Table {
         Self::append(path, columns.len())
     }
 
-    /// Goes on with a table after a restart: keeps the rows whose value in `column` is at most
+    /// Continues a table after a restart: keeps the rows whose value in `column` is at most
     /// `last` and drops later ones, and a half-written last line. A missing table is started. One
-    /// that lacks the last columns gets them, as zero: of what is counted from now on.
+    /// that lacks the last columns gets them as zero: their counts begin now.
     ///
     /// # Errors
     /// [`OutputError::Io`]; [`OutputError::Damaged`] if the table has other columns or a row that
@@ -109,7 +109,7 @@ impl Table {
             return Err(OutputError::damaged(path, what));
         };
         let mut kept = all;
-        let rows_kept = keep(rows, [count, columns.len()], key, last);
+        let rows_kept = keep(rows, count, columns.len(), key, last);
         kept.extend(rows_kept.map_err(|number| {
             let what =
                 format!("row {number} has not {count} values with a number in column {column}");
@@ -174,7 +174,7 @@ impl Table {
         written.map_err(OutputError::io("write", &self.path))
     }
 
-    /// Brings the rows written so far to the disk.
+    /// Syncs the rows written so far to the disk.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -194,12 +194,13 @@ fn cells(values: &[Value]) -> Vec<String> {
     values.iter().map(cell).collect()
 }
 
-/// The bytes of those `rows` of some columns whose number in column `key` is at most `last`, with zeros
-/// up to a number of columns; or the number of the first row that is wrong and has one of those after
-/// it. What is wrong at the end was half written, or is what a power cut leaves.
+/// The bytes of those `rows` of `columns` values whose number in column `key` is at most `last`, filled
+/// with zeros to `wanted` columns; or the number of the first damaged row that has such a row after it.
+/// Damaged rows at the end were half written, or are left by a power cut.
 fn keep(
     rows: &[u8],
-    [columns, wanted]: [usize; 2],
+    columns: usize,
+    wanted: usize,
     key: usize,
     last: f64,
 ) -> Result<Vec<u8>, usize> {
@@ -343,7 +344,7 @@ mod tests {
             .map(|(_, cells)| cells[2].as_str())
             .collect();
         assert_eq!(read, names);
-        // Cut off anywhere in its last row, the table goes on as if that had never been begun.
+        // Cut off anywhere in its last row, the table continues as if that had never been begun.
         let last = whole.find("3,0.5,plain").unwrap();
         for cut in last..whole.len() {
             fs::write(&path, &whole[..cut]).unwrap();
@@ -364,7 +365,7 @@ mod tests {
             error.to_string().contains("row 2 has not 3 values"),
             "{error}"
         );
-        // What a power cut leaves after the last row that is kept.
+        // Remains of a power cut after the last row that is kept.
         fs::write(&path, format!("{whole}\0\0\0\n4,0.5\n")).unwrap();
         Table::resume(&path, &columns(), "step", 3.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole);

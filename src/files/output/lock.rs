@@ -3,7 +3,7 @@
 //! Rank 0 holds an advisory lock on the file `lock` for as long as the run lives; the system drops
 //! it when the process ends, in whatever way. The file says who holds it: a run that ends in good
 //! order removes it, and one that was killed leaves it behind. Where a file system has no locks, or
-//! keeps them on each host for itself, what the file says is all there is.
+//! keeps them on each host for itself, only the content of the file counts.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Read as _, Write as _};
@@ -19,12 +19,12 @@ use super::{OutputError, files};
 /// Name of the lock's file in a run's folder.
 pub(super) const LOCK: &str = "lock";
 
-/// How often a lock is tried for: `info` holds it for a moment, and `mpirun` may end before a rank
-/// that it has killed.
+/// Attempts to lock: `info` holds the lock for a moment, and `mpirun` may end before a rank that it has
+/// killed.
 const TRIES: u32 = 20;
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Who has a folder open: the content of its `lock`.
+/// The process that has a folder open: the content of its `lock`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Holder {
     /// Host of rank 0.
@@ -34,7 +34,7 @@ pub struct Holder {
     /// The batch job that it is part of, where a scheduler started it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub job: Option<String>,
-    /// When it opened the folder (seconds since 1970, UTC).
+    /// Time of opening the folder (seconds since 1970, UTC).
     pub started: u64,
 }
 
@@ -52,7 +52,7 @@ impl Holder {
         }
     }
 
-    /// Whether a process with its id lives, if that can be told from `here`.
+    /// Returns whether a process with its id lives, if `here` can know that.
     fn lives(&self, here: &Self) -> Option<bool> {
         if self.host == here.host {
             Some(is_there(self.process))
@@ -65,7 +65,7 @@ impl Holder {
     }
 }
 
-/// Whether this host has a process of this id.
+/// Returns true if this host has a process of this id.
 fn is_there(process: u32) -> bool {
     let Ok(id) = i32::try_from(process) else {
         return false;
@@ -89,19 +89,19 @@ impl std::fmt::Display for Holder {
     }
 }
 
-/// Whether a run has a folder open.
+/// Presence of a run in a folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Presence {
-    /// Nobody has; the last one that had, if it did not close it.
+    /// No run has it open; the last holder, if it did not close the folder.
     Nobody(Option<Holder>),
-    /// A run has, and this one if the file says so.
+    /// A run has it open; its holder, if the file names it.
     Held(Option<Holder>),
-    /// One on another host had, and may have.
+    /// A run on another host had it open, and may still.
     Unclear(Holder),
 }
 
 impl Presence {
-    /// Whether a run has the folder of a run open, as far as can be told from this host.
+    /// Presence in the folder of a run, as far as this host can know.
     #[must_use]
     pub fn of(folder: &Path) -> Self {
         let Ok(mut file) = File::open(folder.join(LOCK)) else {
@@ -112,7 +112,7 @@ impl Presence {
     }
 }
 
-/// What the attempt to lock a file and its content say.
+/// Presence from the attempt to lock a file and its content.
 fn judge(refused: Option<&TryLockError>, holder: Option<Holder>, here: &Holder) -> Presence {
     let lives = holder.as_ref().and_then(|holder| holder.lives(here));
     match (refused, holder) {
@@ -132,15 +132,15 @@ fn judge(refused: Option<&TryLockError>, holder: Option<Holder>, here: &Holder) 
 pub struct RunLock {
     path: PathBuf,
     file: File,
-    /// Whether the folder goes as well if nothing is in it.
+    /// Set if the folder is removed as well when nothing is in it.
     of_new: bool,
-    /// What the user should know of it.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl RunLock {
-    /// Takes the folder of a run, or says who has it; `ignore` takes it all the same. By one
-    /// process.
+    /// Takes the folder of a run, or names its holder in an error; `ignore` takes it all the same. By
+    /// one process.
     ///
     /// # Errors
     /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`].
@@ -156,7 +156,7 @@ impl RunLock {
             ));
         }
         let presence = judge(verdict.as_ref().err(), read(&mut file), &here);
-        let told = |who: &Option<Holder>| {
+        let describe = |who: &Option<Holder>| {
             let nameless = "a process that has not said its name".to_owned();
             who.as_ref().map_or(nameless, ToString::to_string)
         };
@@ -164,12 +164,12 @@ impl RunLock {
             Presence::Nobody(None) => {}
             Presence::Nobody(before) => warnings.push(format!(
                 "the run before ({}) did not close the folder: it was killed or lost",
-                told(&before)
+                describe(&before)
             )),
             Presence::Held(who) if !ignore => {
                 return Err(OutputError::Held {
                     path: folder.to_owned(),
-                    who: told(&who),
+                    who: describe(&who),
                 });
             }
             Presence::Unclear(who) if !ignore => {
@@ -180,7 +180,7 @@ impl RunLock {
                 });
             }
             Presence::Held(who) => {
-                warnings.push(format!("the lock of {} is ignored", told(&who)));
+                warnings.push(format!("the lock of {} is ignored", describe(&who)));
                 // That lock stays with the old file.
                 file = replace(&path).map_err(OutputError::io("replace", &path))?;
             }
@@ -203,7 +203,7 @@ impl RunLock {
 }
 
 impl Drop for RunLock {
-    /// Removes the file, if it is still this process's, and with it the lock; and a folder that was
+    /// Removes the file, if it is still this process's, and with it the lock; also a folder that was
     /// made for a run which then did not begin.
     fn drop(&mut self) {
         if is_at(&self.file, &self.path) {
@@ -224,7 +224,7 @@ fn open(path: &Path) -> io::Result<(File, Result<(), TryLockError>)> {
         let file = options.read(true).write(true).create(true).open(path)?;
         let verdict = file.try_lock();
         tries += 1;
-        // One that has just been removed is nobody's any more.
+        // A file that has just been removed is locked in vain.
         let again = matches!(verdict, Err(TryLockError::WouldBlock)) || !is_at(&file, path);
         if !again || tries == TRIES {
             return Ok((file, verdict));
@@ -233,7 +233,7 @@ fn open(path: &Path) -> io::Result<(File, Result<(), TryLockError>)> {
     }
 }
 
-/// A new, locked file in the place of another.
+/// Replaces a file by a new, locked one.
 fn replace(path: &Path) -> io::Result<File> {
     let temporary = files::partial(path);
     let file = File::create(&temporary)?;
@@ -266,10 +266,10 @@ fn sign(file: &mut File, holder: &Holder) -> io::Result<()> {
 fn host() -> String {
     let mut name = [0_u8; 256];
     // SAFETY: the buffer is as long as it says; the last byte stays zero.
-    let code = unsafe { libc::gethostname(name.as_mut_ptr().cast(), name.len() - 1) };
+    let status = unsafe { libc::gethostname(name.as_mut_ptr().cast(), name.len() - 1) };
     let end = name.iter().position(|&byte| byte == 0).unwrap_or(0);
     let name = String::from_utf8_lossy(&name[..end]);
-    if code == 0 && !name.is_empty() {
+    if status == 0 && !name.is_empty() {
         name.into_owned()
     } else {
         "an unknown host".to_owned()
@@ -351,13 +351,13 @@ mod tests {
     fn without_locks_the_file_decides() {
         let here = holder("a", 1);
         let refused = TryLockError::Error(io::ErrorKind::Unsupported.into());
-        let tell = |holder: Option<Holder>| judge(Some(&refused), holder, &here);
+        let presence = |holder: Option<Holder>| judge(Some(&refused), holder, &here);
         let (me, gone) = (holder("a", std::process::id()), holder("a", 0x7fff_fff0));
-        assert_eq!(tell(None), Presence::Nobody(None));
-        assert_eq!(tell(Some(me.clone())), Presence::Held(Some(me)));
-        assert_eq!(tell(Some(gone.clone())), Presence::Nobody(Some(gone)));
+        assert_eq!(presence(None), Presence::Nobody(None));
+        assert_eq!(presence(Some(me.clone())), Presence::Held(Some(me)));
+        assert_eq!(presence(Some(gone.clone())), Presence::Nobody(Some(gone)));
         let other = holder("b", 1);
-        assert_eq!(tell(Some(other.clone())), Presence::Unclear(other));
+        assert_eq!(presence(Some(other.clone())), Presence::Unclear(other));
 
         // A batch job that was begun anew on another host.
         let mut again = holder("b", 1);

@@ -38,7 +38,7 @@ pub fn of_distributions() -> Vec<Column> {
     ])
 }
 
-/// Rows of `measures.csv` at a time (s), of a model of so many dimensions.
+/// Rows of `measures.csv` at a time (s) in a model of `dimension` dimensions.
 pub fn figures<'a>(
     time: f64,
     found: impl Iterator<Item = (&'a Measure, &'a Findings)>,

@@ -1,7 +1,7 @@
-//! Results and checkpoints: what a run writes, when, and how it is read back.
+//! Results and checkpoints: the files of a run, when they are written, and how they are read back.
 //!
-//! All ranks call the writers together and all get the same verdict: every return code is voted
-//! before anybody goes on ([`agree`]), so that callers leave together. Rows stand in the order of
+//! All ranks call the writers together and all get the same result: ranks agree on every return code
+//! before any goes on ([`agree`]), so that callers leave together. Rows are in the order of
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only module that names HDF5.
 
 mod begin;
@@ -51,7 +51,7 @@ pub use set_aside::SetAside;
 pub use sheet::Sheet;
 pub use sheet::line as table_line;
 pub use status::{Energies, Outlook, Phase, Status};
-use vote::settle;
+use vote::publish_or_remove;
 pub use vote::{agree, from_root, on_root};
 
 /// The program's version.
@@ -59,8 +59,8 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 static COMMIT: OnceLock<&'static str> = OnceLock::new();
 
-/// Notes the commit that the program is built from, once and before anything else: its build knows it, and so that a
-/// commit alone builds nothing but the program, nothing below it does.
+/// Sets the commit that the program is built from, once and before anything else. Only the build of the
+/// program knows it, so that a commit alone rebuilds nothing else.
 pub fn set_commit(commit: &'static str) {
     COMMIT.get_or_init(|| commit);
 }

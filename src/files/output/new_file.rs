@@ -1,4 +1,4 @@
-//! Large files that appear under their names when they are whole.
+//! Large files that appear under their names once they are whole.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -21,8 +21,8 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Begins a file; one of the same name stays until the new one is whole. Its folder is made if
-    /// it lacks.
+    /// Begins a file; one of the same name stays until the new one is whole. Creates the folder if it
+    /// is missing.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -44,7 +44,7 @@ impl NewFile {
         })
     }
 
-    /// Its name when it is whole.
+    /// The path of the whole file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
@@ -67,26 +67,26 @@ impl NewFile {
         Ok(())
     }
 
-    /// Puts other bytes in the place of some that have been put.
+    /// Overwrites bytes that have been put, from an offset (bytes) on.
     ///
     /// # Errors
     /// [`OutputError::Io`].
-    pub fn replace(&mut self, place: u64, bytes: &[u8]) -> Result<(), OutputError> {
-        let put = self.file.seek(SeekFrom::Start(place));
+    pub fn replace(&mut self, offset: u64, bytes: &[u8]) -> Result<(), OutputError> {
+        let put = self.file.seek(SeekFrom::Start(offset));
         let put = put.and_then(|_| self.file.write_all(bytes));
         let put = put.and_then(|()| self.file.seek(SeekFrom::Start(self.written)));
         put.map(|_| ())
             .map_err(OutputError::io("write", &self.temporary))
     }
 
-    /// Makes it last and gives it its name.
+    /// Syncs the file and gives it its name.
     ///
     /// # Errors
     /// [`OutputError::Io`].
     pub fn finish(mut self) -> Result<(), OutputError> {
         let flushed = self.file.flush();
-        let lasting = flushed.and_then(|()| self.file.get_ref().sync_all());
-        lasting.map_err(OutputError::io("write", &self.temporary))?;
+        let synced = flushed.and_then(|()| self.file.get_ref().sync_all());
+        synced.map_err(OutputError::io("write", &self.temporary))?;
         publish(&self.temporary, &self.path)?;
         self.whole = true;
         Ok(())
@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn a_file_appears_when_it_is_whole() {
-        let place = tempfile::tempdir().unwrap();
-        let path = place.path().join("made/here.txt");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("made/here.txt");
         let mut file = NewFile::create(&path).unwrap();
         file.put(b"0000, body").unwrap();
         file.replace(0, b"head").unwrap();

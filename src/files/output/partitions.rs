@@ -1,5 +1,5 @@
-//! The pieces in which a snapshot's rows stand, so that parallel readers of VTKHDF share them: a
-//! fixed number of rows each, whatever the ranks.
+//! Partitions of a snapshot's rows, which parallel readers of VTKHDF share: a fixed number of rows each,
+//! whatever the ranks.
 
 use super::Block;
 
@@ -13,12 +13,12 @@ const MOST: u64 = 1 << 20;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Partitions {
     total: u64,
-    /// Of each but the last.
+    /// Rows of each but the last.
     rows: u64,
 }
 
 impl Partitions {
-    /// Cuts so many rows into partitions of so many, at least one.
+    /// Cuts `total` rows into partitions of `rows` each, at least one.
     #[must_use]
     pub fn new(total: u64, rows: u64) -> Self {
         Self {
@@ -27,7 +27,7 @@ impl Partitions {
         }
     }
 
-    /// How many there are.
+    /// Number of partitions.
     #[must_use]
     pub fn count(self) -> u64 {
         self.total.div_ceil(self.rows).max(1)
@@ -38,15 +38,15 @@ impl Partitions {
         (0..self.count()).map(move |k| self.rows.min(self.total - k * self.rows))
     }
 
-    /// Where a row stands in its partition.
+    /// The number of a row in its partition.
     #[must_use]
-    pub fn place(self, row: u64) -> u64 {
+    pub fn local_row(self, row: u64) -> u64 {
         row % self.rows
     }
 
     /// The offsets of a block's cells: one for each row, and one behind the last row of each
-    /// partition, which who holds that row writes. Who holds the end of all rows `closes` the last
-    /// one.
+    /// partition, which the rank with that row writes. The rank with the end of all rows `closes` the
+    /// last one.
     ///
     /// # Panics
     /// If the block is longer than an address.
@@ -74,10 +74,10 @@ impl Partitions {
     }
 }
 
-/// Checks what a file says of its partitions, which anybody may have written.
+/// Checks the partitions that an untrusted file declares.
 ///
 /// # Errors
-/// A text if they cannot be those of so many rows.
+/// A text if they cannot be those of `rows` rows.
 pub fn check(sizes: &[i64], rows: u64) -> Result<(), String> {
     check_count(sizes.len() as u64)?;
     let mut sum = 0_u64;
@@ -93,7 +93,7 @@ pub fn check(sizes: &[i64], rows: u64) -> Result<(), String> {
     }
 }
 
-/// Checks how many partitions a file says it has, before memory is taken for them.
+/// Checks the number of partitions that a file declares, before memory is taken for them.
 ///
 /// # Errors
 /// A text if there are none or more than any snapshot has.
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Of virtual particles: nothing is as large in memory.
+    /// Numbers of virtual particles, more than fit memory.
     #[test]
     fn more_than_four_thousand_million_rows_have_their_places() {
         for (total, ranks) in [(1 << 32, 7), (5_000_000_001, 10_000), (1 << 40, 100_000)] {
@@ -175,7 +175,7 @@ mod tests {
                 let offsets = partitions.offsets(block, block.closes(rank == 0));
                 assert_eq!((block.first, offsets.first), (row, entry));
                 // The first offset is that of the first row.
-                assert_eq!(partitions.offset(entry), partitions.place(row));
+                assert_eq!(partitions.offset(entry), partitions.local_row(row));
                 row += block.count as u64;
                 entry += offsets.count as u64;
             }
@@ -200,8 +200,8 @@ mod tests {
             (&[-1, 6], "a partition of -1 rows"),
             (&[i64::MAX, i64::MAX, i64::MAX], "more than the 5 rows"),
         ] {
-            let told = check(sizes, 5).unwrap_err();
-            assert!(told.contains(expected), "{told}");
+            let error = check(sizes, 5).unwrap_err();
+            assert!(error.contains(expected), "{error}");
         }
         assert!(check_count(u64::MAX).is_err());
     }

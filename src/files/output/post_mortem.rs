@@ -1,4 +1,4 @@
-//! Post-mortems: a particle that failed numerically with all that is about it, as text and as HDF5.
+//! Post-mortems: a particle that failed numerically, with its neighbours, as text and as HDF5.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::checkpoint::row_type;
 use super::h5::{Element, RowType, Writer};
 use super::{Block, OutputError, write_atomically};
 
-/// Writes `STEM.txt` and `STEM.h5`; `what` is what is wrong. By the rank that owns the particle.
+/// Writes `STEM.txt` and `STEM.h5`; `what` describes the failure. By the rank that owns the particle.
 ///
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Hdf5`].
@@ -101,8 +101,8 @@ fn text(what: &str, case: &Case, particles: &ParticleStore, about: &PostMortem) 
         "Particle {} of body `{body}`, on rank {}, after step {} at {:e} s:\n{what}\n\n",
         about.id, about.rank, about.step, about.time
     );
-    tell_fields(&mut text, particles, particle);
-    tell_neighbours(&mut text, case, particles, about);
+    append_fields(&mut text, particles, particle);
+    append_neighbours(&mut text, case, particles, about);
     text.push_str("\nThe last votes (step, next time step in s, its reason, particle):\n");
     for past in &about.past_steps {
         let _ = writeln!(
@@ -115,7 +115,7 @@ fn text(what: &str, case: &Case, particles: &ParticleStore, about: &PostMortem) 
 }
 
 /// A line for each field of a particle.
-fn tell_fields(text: &mut String, particles: &ParticleStore, particle: u32) {
+fn append_fields(text: &mut String, particles: &ParticleStore, particle: u32) {
     for field in particles.held(FieldInfo::any) {
         let bytes = gather(particles, field, &[particle]);
         let values = match field.kind {
@@ -141,7 +141,12 @@ fn tell_fields(text: &mut String, particles: &ParticleStore, particle: u32) {
 }
 
 /// A line for each neighbour: those of the particle's own body, then others.
-fn tell_neighbours(text: &mut String, case: &Case, particles: &ParticleStore, about: &PostMortem) {
+fn append_neighbours(
+    text: &mut String,
+    case: &Case,
+    particles: &ParticleStore,
+    about: &PostMortem,
+) {
     let own = particles.body[about.members[0] as usize];
     let spacing = case.bodies[own as usize].lattice.spacing;
     for (title, other) in [

@@ -1,4 +1,4 @@
-//! What snapshots hold for each particle.
+//! Quantities of particles in snapshots.
 
 use super::OutputError;
 use model::{Case, SphForm};
@@ -6,7 +6,7 @@ use particles::{
     FIELDS, FRAGMENT, FieldInfo, FieldKind, Output, ParticleStore, TEMPERATURE, VON_MISES_STRESS,
 };
 
-/// Something that a snapshot holds for each particle, beside its position.
+/// A quantity that a snapshot holds for each particle, beside its position.
 #[derive(Debug, Clone, Copy)]
 pub enum Quantity {
     /// A field of the table.
@@ -61,9 +61,9 @@ impl Quantity {
     }
 }
 
-/// The quantities of a case that are asked for by `names`: as [`quantities`], but by default none that
-/// `particles` have no use for; and what tells stress points from particles where there are any, and
-/// unequal particles from each other.
+/// The quantities of a case that `names` choose: as [`quantities`], but by default none that
+/// `particles` have no use for. The stress mass, which distinguishes stress points from particles, is
+/// always there where a case has such points, and the mass where particles have several sizes.
 ///
 /// # Errors
 /// As [`quantities`].
@@ -89,7 +89,6 @@ pub fn quantities_of(
     if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
         names.push(role);
     }
-    // Masses tell sizes.
     let mass = "mass".to_owned();
     let is_uneven = case.bodies.iter().any(|b| b.lattice.sizes.is_some());
     if is_uneven && !names.contains(&mass) {

@@ -1,19 +1,19 @@
-//! When a run writes rows of its tables.
+//! Times at which a run writes rows of its tables.
 
 use super::Schedule;
 use model::{Cadence, Case, RunControl};
 
-/// Rows of a run that does not say when it has them: enough for a curve, and for one of 200 also where
-/// steps are uneven.
+/// Rows of a run without an interval of its own: enough for a curve, and for one of 200 also where steps are
+/// uneven.
 const ROWS: u32 = 250;
 
-/// The same of `bodies.csv`, whose rows cost most: some 7 % of a step.
+/// Such rows of `bodies.csv`, which cost most: some 7 % of a step.
 const BODIES: u32 = 50;
 
-/// Most steps between two looks at the sums of all particles, which find what gains energy from nowhere.
+/// Most steps between two checks of the sums over all particles, which find spurious gains of energy.
 const SUMS_EVERY: u64 = 10;
 
-/// When rows of `history.csv` and the tables that go with it are due: a pure function of steps and
+/// Due rows of `history.csv` and the tables that go with it: a pure function of steps and
 /// their times, as [`Schedule`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RowSchedule {
@@ -36,8 +36,8 @@ impl Marks {
         }
     }
 
-    /// So many of a run, by time and by steps.
-    fn parts(run: &RunControl, count: u32) -> Self {
+    /// A number of marks in a run, evenly by time and by steps.
+    fn evenly(run: &RunControl, count: u32) -> Self {
         let steps = run.max_steps.map(|most| most / u64::from(count));
         Self::new(steps, Some(run.end_time / f64::from(count)))
     }
@@ -49,7 +49,7 @@ impl Marks {
 }
 
 impl RowSchedule {
-    /// Of a case; where it does not say, a part of its end by time and by steps, whichever comes.
+    /// Of a case; by default at fractions of its end by time and by steps, whichever comes first.
     #[must_use]
     pub fn of(case: &Case) -> Self {
         let same = |marks| Self {
@@ -60,26 +60,26 @@ impl RowSchedule {
             Some(Cadence::Steps(steps)) => same(Marks::new(Some(steps), None)),
             Some(Cadence::Time(time)) => same(Marks::new(None, Some(time))),
             None => Self {
-                rows: Marks::parts(&case.run, ROWS),
-                bodies: Marks::parts(&case.run, BODIES),
+                rows: Marks::evenly(&case.run, ROWS),
+                bodies: Marks::evenly(&case.run, BODIES),
             },
         }
     }
 
-    /// Whether a row is due after a step of this number from time `before` to time `now` (s).
+    /// Returns true if a row is due after a step of this number from time `before` to time `now` (s).
     #[must_use]
     pub fn is_due(&self, step: u64, before: f64, now: f64) -> bool {
         self.rows.are_met(step, before, now) || self.bodies_are_due(step, before, now)
     }
 
-    /// Whether that row tells of each body too.
+    /// Returns true if rows of bodies are due too.
     #[must_use]
     pub fn bodies_are_due(&self, step: u64, before: f64, now: f64) -> bool {
         self.bodies.are_met(step, before, now)
     }
 
-    /// Whether the sums over all particles are to be looked at after such a step: for a row, and now and
-    /// then where rows are rare.
+    /// Returns true if the sums over all particles are due after such a step: for a row, and every
+    /// n-th step where rows are rare.
     #[must_use]
     pub fn sums_are_due(&self, step: u64, before: f64, now: f64) -> bool {
         step.is_multiple_of(SUMS_EVERY) || self.is_due(step, before, now)
@@ -90,7 +90,7 @@ impl RowSchedule {
 mod tests {
     use super::*;
 
-    /// Rows of so many steps up to a time of 1 s, and those of them that tell of bodies.
+    /// Numbers of rows in `steps` steps up to a time of 1 s, and of those with bodies.
     fn rows(schedule: RowSchedule, steps: u32) -> [usize; 2] {
         let time = |n: u32| f64::from(n) / f64::from(steps);
         let count = |due: fn(&RowSchedule, u64, f64, f64) -> bool| {
@@ -103,21 +103,21 @@ mod tests {
         ]
     }
 
-    fn usual(max_steps: Option<u64>) -> RowSchedule {
+    fn default_schedule(max_steps: Option<u64>) -> RowSchedule {
         let run = RunControl {
             end_time: 1.0,
             max_steps,
         };
         RowSchedule {
-            rows: Marks::parts(&run, ROWS),
-            bodies: Marks::parts(&run, BODIES),
+            rows: Marks::evenly(&run, ROWS),
+            bodies: Marks::evenly(&run, BODIES),
         }
     }
 
     #[test]
     fn short_runs_have_every_step_and_long_ones_a_curve() {
         for (steps, expected) in [(9, 9), (150, 150), (240, 240), (400, 250), (100_000, 250)] {
-            let [all, bodies] = rows(usual(None), steps);
+            let [all, bodies] = rows(default_schedule(None), steps);
             // Marks of the two may differ by rounding, and so by a step.
             assert!(all >= expected && all <= expected + 50, "{steps}: {all}");
             assert!(
@@ -125,8 +125,8 @@ mod tests {
                 "{steps}: {bodies}"
             );
         }
-        // As many again at most, where the case tells of steps too.
-        let [all, _] = rows(usual(Some(10_000)), 10_000);
+        // As many again at most, where the case limits steps too.
+        let [all, _] = rows(default_schedule(Some(10_000)), 10_000);
         assert!((250..=550).contains(&all), "{all}");
     }
 

@@ -1,78 +1,78 @@
 //! Particles in the order of their ids, in even blocks over the ranks that write.
 //!
-//! Ranks own particles in any order, and ids know nothing of ranks: a rank may have rows of any
-//! block. So rows take two hops over groups of some √P ranks, first to a rank of the group that
-//! has their block, then within the group. No rank sends more than 2√P messages for a field.
-//! Beside its own particles and its own block a rank has what passes through it, one field at a
-//! time: as much as its own again, and a few times that where many ranks have rows for one group.
+//! Ranks own particles in any order, independent of ids: a rank may have rows of any block. So rows go
+//! in two transfers over groups of some √P ranks, first to a rank of the group that has their block,
+//! then within the group. No rank sends more than 2√P messages for a field. Beside its own particles
+//! and its own block a rank has the rows that pass through it, one field at a time: as much as its own
+//! again, and a few times that where many ranks have rows for one group.
 //!
 //! Boundaries are ids, found by bisection on counts, all at once: those of groups by all ranks,
 //! those of blocks by each group for itself. Up to three ranks are one group, for which the second
-//! hop is enough.
+//! transfer is enough.
 
 mod groups;
-mod hop;
+mod transfer;
 
 use comm::{Comm, Exchange};
 use model::Sharing;
 
 use super::{Block, OutputError, agree};
 use groups::Groups;
-use hop::{Hop, Ways};
+use transfer::{Routes, Transfer};
 
-pub use hop::Gathered;
+pub use transfer::Gathered;
 
-/// Most rows of a writer, whose places are counted in `u32`.
+/// Most rows of a writer, which are counted in `u32`.
 const MOST_ROWS: u64 = 1 << 31;
 
-/// How many of the ranks write so many rows: as many as are asked for, if they can hold them.
-fn writers(asked: Option<usize>, total: u64, ranks: usize) -> usize {
+/// Number of ranks that write `total` rows: the wanted number, if they can hold them.
+fn writers(wanted: Option<usize>, total: u64, ranks: usize) -> usize {
     let least = usize::try_from(total.div_ceil(MOST_ROWS)).unwrap_or(usize::MAX);
-    asked.unwrap_or(ranks).max(least).clamp(1, ranks)
+    wanted.unwrap_or(ranks).max(least).clamp(1, ranks)
 }
 
-/// The first hop, to the groups of ranks.
+/// The first transfer, to the groups of ranks.
 struct ToGroups {
     groups: Groups,
     /// The ranks of this one's group.
     group: Comm,
-    ways: Ways,
-    hop: Hop,
+    routes: Routes,
+    transfer: Transfer,
     /// Values on their way through this rank.
     passing: Vec<u8>,
 }
 
 impl ToGroups {
-    /// Of all ranks, unless they are one group. Collective.
+    /// Over all ranks, unless they are one group. Collective.
     fn new(comm: &Comm) -> Option<Self> {
         let (groups, rank) = (Groups::of(comm.size()), comm.rank());
         (groups.count() > 1).then(|| Self {
             groups,
             group: comm.among(groups.members(groups.group(rank))),
-            ways: Ways {
+            routes: Routes {
                 to: groups.gates(rank).collect(),
                 from: groups.guests(rank).collect(),
             },
-            hop: Hop::default(),
+            transfer: Transfer::default(),
             passing: Vec::new(),
         })
     }
 }
 
-/// The way of particles to rows in id order. Buffers are kept from one output to the next.
+/// Gathers particles as rows in id order. Buffers are kept from one output to the next.
 #[derive(Default)]
 pub struct Rows {
     sharing: Sharing,
     block: Block,
-    /// Ranks that the hops are for.
+    /// Ranks that the transfers are for.
     ranks: usize,
     to_groups: Option<ToGroups>,
-    to_blocks: Hop,
+    to_blocks: Transfer,
     exchange: Exchange,
 }
 
 impl Rows {
-    /// For files that are written so.
+    /// For files that ranks share so.
     #[must_use]
     pub fn new(sharing: Sharing) -> Self {
         Self {
@@ -81,7 +81,7 @@ impl Rows {
         }
     }
 
-    /// How files are written.
+    /// The sharing of files among ranks.
     #[must_use]
     pub fn sharing(&self) -> Sharing {
         self.sharing
@@ -120,7 +120,8 @@ impl Rows {
             self.ranks = ranks;
             self.to_groups = ToGroups::new(comm);
         }
-        let first = (self.to_groups.as_mut()).map_or(&mut self.to_blocks, |first| &mut first.hop);
+        let first = self.to_groups.as_mut();
+        let first = first.map_or(&mut self.to_blocks, |first| &mut first.transfer);
         let mut total = [first.choose(ids, chosen)];
         comm.sum_u64(&mut total);
         let total = total[0];
@@ -134,16 +135,17 @@ impl Rows {
             let starts = (0..groups.count()).map(|k| block(groups.members(k).start).first);
             let starts: Vec<u64> = starts.collect();
             let exchange = &mut self.exchange;
-            first.hop.plan(comm, exchange, (ids, &starts), &first.ways);
+            let transfer = &mut first.transfer;
+            transfer.plan(comm, exchange, ids, &starts, &first.routes);
             members = groups.members(groups.group(comm.rank()));
-            (group, ids) = (&first.group, first.hop.ids());
+            (group, ids) = (&first.group, first.transfer.ids());
             self.to_blocks.choose(ids, (0..).take(ids.len()));
         }
         let begin = block(members.start).first;
         let starts: Vec<u64> = members.map(|rank| block(rank).first - begin).collect();
-        let ways = Ways::all(group);
+        let routes = Routes::all(group);
         self.to_blocks
-            .plan(group, &mut self.exchange, (ids, &starts), &ways);
+            .plan(group, &mut self.exchange, ids, &starts, &routes);
         agree(comm, self.check())
     }
 
@@ -162,7 +164,7 @@ impl Rows {
         let exchange = &mut self.exchange;
         match &mut self.to_groups {
             Some(first) => {
-                let passing = first.hop.carry(comm, exchange, values, size);
+                let passing = first.transfer.carry(comm, exchange, values, size);
                 passing.copy_to(&mut first.passing);
                 (self.to_blocks).carry(&first.group, exchange, &first.passing, size)
             }

@@ -19,7 +19,7 @@ pub(super) const HDF5_ENDING: &str = ".h5";
 pub(super) const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
-/// The folder of a run and the names of what is in it.
+/// The folder of a run and the names of its files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunFolder {
     pub(super) path: PathBuf,
@@ -48,13 +48,13 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Whether a folder holds a run.
+    /// Returns true if a folder holds a run.
     #[must_use]
     pub fn is_run(path: &Path) -> bool {
         path.join(STATUS).is_file()
     }
 
-    /// The run that a checkpoint stands in, if it stands in one.
+    /// The run that a checkpoint belongs to, if it is in the folder of one.
     #[must_use]
     pub fn of_checkpoint(checkpoint: &Path) -> Option<Self> {
         let checkpoint = checkpoint.canonicalize().ok()?;
@@ -62,7 +62,7 @@ impl RunFolder {
         Self::is_run(path).then(|| Self::at(path))
     }
 
-    /// The checkpoints there are, newest first.
+    /// The checkpoints, newest first.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -71,7 +71,7 @@ impl RunFolder {
         Ok(found.into_iter().rev().map(|(_, path)| path).collect())
     }
 
-    /// Where post-mortems of a step go, without an ending.
+    /// Path of post-mortems of a step, without an ending.
     #[must_use]
     pub fn post_mortem(&self, step: u64) -> PathBuf {
         self.path.join(TROUBLE).join(format!("step-{step:08}"))
@@ -101,14 +101,14 @@ impl RunFolder {
         &self.path
     }
 
-    /// A snapshot's file name. Named by step, so that it means the same state in any run of
-    /// the case, whatever is written how often.
+    /// A snapshot's file name. Named by step, so that it is the same state in any run of the case,
+    /// whatever the intervals of output.
     #[must_use]
     pub fn snapshot_name(step: u64) -> String {
         format!("step-{step:08}{SNAPSHOT_ENDING}")
     }
 
-    /// A usual snapshot's path.
+    /// The path of a default snapshot.
     #[must_use]
     pub fn snapshot(&self, step: u64) -> PathBuf {
         self.snapshot_of(None, step)
@@ -120,13 +120,13 @@ impl RunFolder {
         in_steps(&self.fragment_tables(), step, FRAGMENTS_ENDING)
     }
 
-    /// The path of the same as HDF5.
+    /// The path of the same table as HDF5.
     #[must_use]
     pub fn fragment_hdf5(&self, step: u64) -> PathBuf {
         in_steps(&self.fragment_tables(), step, HDF5_ENDING)
     }
 
-    /// The path of what many gauges have read up to a step.
+    /// The path of the readings of many gauges up to a step.
     #[must_use]
     pub fn gauge_record(&self, step: u64) -> PathBuf {
         in_steps(&self.gauge_records(), step, HDF5_ENDING)
@@ -143,8 +143,7 @@ impl RunFolder {
         files::write_atomically(&self.fragment_table(step), &table.text())
     }
 
-    /// The tables of all fragments that there are, of text and of HDF5, with their steps and in the order
-    /// of these.
+    /// The tables of all fragments, of text and of HDF5, with their steps and in the order of these.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -152,7 +151,7 @@ impl RunFolder {
         by_steps(&self.fragment_tables(), &[FRAGMENTS_ENDING, HDF5_ENDING])
     }
 
-    /// What many gauges have read, file after file, with their last steps.
+    /// The files of readings of many gauges, with their last steps and in the order of these.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -160,13 +159,13 @@ impl RunFolder {
         by_steps(&self.gauge_records(), &[HDF5_ENDING])
     }
 
-    /// The index of the usual snapshots.
+    /// The index of the default snapshots.
     #[must_use]
     pub fn series(&self) -> PathBuf {
         self.series_of(None)
     }
 
-    /// The usual snapshots that there are, in the order of steps.
+    /// The default snapshots, in the order of steps.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -175,7 +174,7 @@ impl RunFolder {
     }
 }
 
-/// The file of a step in a folder of such.
+/// The file of a step in a folder.
 fn in_steps(folder: &Path, step: u64, ending: &str) -> PathBuf {
     folder.join(format!("step-{step:08}{ending}"))
 }
@@ -191,7 +190,7 @@ fn by_steps(folder: &Path, endings: &[&str]) -> Result<Vec<(u64, PathBuf)>, Outp
     Ok(found)
 }
 
-/// Declares what stands in the folder of a run: how it is asked for, and its name.
+/// Declares files in the folder of a run: method and name.
 macro_rules! paths {
     ($($(#[$doc:meta])+ $path:ident: $name:expr;)+) => {
         impl RunFolder { $(
@@ -220,27 +219,27 @@ paths! {
     contacts: "contacts.csv";
     /// Table of loads.
     loads: "loads.csv";
-    /// Table of what removed particles took with them.
+    /// Table of the mass, momentum and energy of removed particles.
     removed: "removed.csv";
-    /// Table of what particles that left the box of interest took with them.
+    /// Table of the mass, momentum and energy of particles that left the box of interest.
     departed: "departed.csv";
-    /// Table of fragments at one time after the other.
+    /// Table of fragments over time.
     fragments: "fragments.csv";
-    /// Table of what there is of each body.
+    /// Table of the sums over each body.
     bodies: "bodies.csv";
     /// Table of gauges.
     gauges: "gauges.csv";
-    /// Table of what measures tell.
+    /// Table of the figures of measures.
     measures: "measures.csv";
-    /// Table of profiles and other distributions that measures tell.
+    /// Table of profiles and other distributions of measures.
     distributions: "distributions.csv";
-    /// Table of what has passed witness planes.
+    /// Table of sums over the particles that have passed witness planes.
     witness: "witness.csv";
-    /// Table of who has passed them, where and when.
+    /// Table of the particles that have passed them, with position and time.
     crossings: "crossings.csv";
     /// Table of wall-clock times.
     performance: "performance.csv";
-    /// Table of what each rank, or group of ranks, has.
+    /// Table of the load of each rank or group of ranks.
     ranks: "ranks.csv";
     /// The log.
     log: "log.txt";
@@ -251,7 +250,7 @@ paths! {
 }
 
 paths! {
-    /// The file whose appearance asks the run to stop.
+    /// The file that stops the run when it appears.
     stop: "stop";
     /// The folder of snapshots.
     snapshots: SNAPSHOTS;
@@ -259,7 +258,7 @@ paths! {
     checkpoints: CHECKPOINTS;
     /// The folder of tables of all fragments.
     fragment_tables: FRAGMENTS;
-    /// The folder of what many gauges have read.
+    /// The folder of readings of many gauges.
     gauge_records: GAUGES;
 }
 
@@ -269,8 +268,8 @@ mod tests {
 
     #[test]
     fn a_stop_file_is_that_of_an_earlier_run_or_of_this_one() {
-        let place = tempfile::tempdir().unwrap();
-        let run = RunFolder::at(place.path());
+        let folder = tempfile::tempdir().unwrap();
+        let run = RunFolder::at(folder.path());
         fs::write(run.stop(), "").unwrap();
         let second = std::time::Duration::from_secs(1);
         let written = fs::metadata(run.stop()).unwrap().modified().unwrap();

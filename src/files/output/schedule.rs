@@ -1,6 +1,6 @@
-//! When something is due.
+//! Times at which output is due.
 
-/// Due times 0, Δ, 2Δ, …: what is due at `nΔ` happens at the first step at or after it.
+/// Due times 0, Δ, 2Δ, …: output due at `nΔ` happens at the first step at or after it.
 ///
 /// A pure function of the step's times, so that neither a restart nor an early stop shifts
 /// anything, and a restart may change the interval.
@@ -10,7 +10,7 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// Every so many seconds, or never. Intervals that are not positive mean never.
+    /// Due at an interval (s), or never. Intervals that are not positive mean never.
     #[must_use]
     pub fn new(every: Option<f64>) -> Self {
         Self {
@@ -18,7 +18,7 @@ impl Schedule {
         }
     }
 
-    /// Whether a step from time `before` to time `now` (s) reaches or passes a due time.
+    /// Returns true if a step from time `before` to time `now` (s) reaches or passes a due time.
     #[must_use]
     pub fn is_due(&self, before: f64, now: f64) -> bool {
         self.every

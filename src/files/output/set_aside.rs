@@ -1,9 +1,9 @@
-//! What a restart takes out of its way: set aside under another name, until it is not needed.
+//! Files of a run that a restart sets aside until they are not needed.
 //!
 //! A restart from a checkpoint writes anew what the run had written after it. Until it has a
-//! checkpoint of its own, what came later stays in `set-aside/N/`, laid out like the run's folder.
-//! Every order of steps here leaves, if it is cut short, checkpoints whose tables are whole: tables
-//! are cut last, when no later checkpoint is left in its place.
+//! checkpoint of its own, the later files stay in `set-aside/N/`, laid out like the run's folder.
+//! If a restart is interrupted anywhere, the checkpoints left have whole tables: tables are cut
+//! last, when no later checkpoint is left in the run's folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,12 +19,12 @@ pub(super) const SET_ASIDE: &str = "set-aside";
 pub struct SetAside {
     run: PathBuf,
     folder: PathBuf,
-    /// From where to where, in the order of moving.
+    /// Sources and destinations, in the order of moving.
     moved: Vec<(PathBuf, PathBuf)>,
 }
 
 impl SetAside {
-    /// An empty place in the folder of a run.
+    /// A new folder for such files in that of a run.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -47,12 +47,11 @@ impl SetAside {
     /// # Errors
     /// [`OutputError::Io`].
     pub(super) fn take(&mut self, path: &Path) -> Result<(), OutputError> {
-        let place = self.place(path)?;
-        self.rename(path, place)
+        let destination = self.destination(path)?;
+        self.rename(path, destination)
     }
 
-    /// Gives something another name in its own folder: what it has and an ending, with a number if
-    /// that is taken.
+    /// Renames a file or folder within its own folder: adds an ending, with a number if that is taken.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -65,13 +64,13 @@ impl SetAside {
             }
             PathBuf::from(name)
         };
-        let place = (1..=u32::MAX).map(named).find(|path| !path.exists());
-        self.rename(path, place.unwrap_or_default())
+        let free = (1..=u32::MAX).map(named).find(|path| !path.exists());
+        self.rename(path, free.unwrap_or_default())
     }
 
-    fn rename(&mut self, path: &Path, place: PathBuf) -> Result<(), OutputError> {
-        fs::rename(path, &place).map_err(OutputError::io("move", path))?;
-        self.moved.push((path.to_owned(), place));
+    fn rename(&mut self, path: &Path, destination: PathBuf) -> Result<(), OutputError> {
+        fs::rename(path, &destination).map_err(OutputError::io("move", path))?;
+        self.moved.push((path.to_owned(), destination));
         Ok(())
     }
 
@@ -80,33 +79,33 @@ impl SetAside {
     /// # Errors
     /// [`OutputError::Io`].
     pub(super) fn copy(&mut self, path: &Path) -> Result<(), OutputError> {
-        let place = self.place(path)?;
-        match fs::copy(path, &place) {
+        let destination = self.destination(path)?;
+        match fs::copy(path, &destination) {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
             Err(error) => Err(OutputError::io("copy", path)(error)),
             Ok(_) => {
-                files::sync_file(&place)?;
-                self.moved.push((path.to_owned(), place));
+                files::sync_file(&destination)?;
+                self.moved.push((path.to_owned(), destination));
                 Ok(())
             }
         }
     }
 
-    /// The same path below the place.
-    fn place(&self, path: &Path) -> Result<PathBuf, OutputError> {
+    /// The same path below the folder of files set aside.
+    fn destination(&self, path: &Path) -> Result<PathBuf, OutputError> {
         let name = path.strip_prefix(&self.run).unwrap_or(path);
-        let place = self.folder.join(name);
-        if let Some(parent) = place.parent() {
+        let destination = self.folder.join(name);
+        if let Some(parent) = destination.parent() {
             fs::create_dir_all(parent).map_err(OutputError::io("create the folder", parent))?;
         }
-        Ok(place)
+        Ok(destination)
     }
 
-    /// Puts everything back: the restart could not begin. What cannot be put back stays set aside.
+    /// Moves everything back: the restart could not begin. Files that cannot be moved stay set aside.
     pub fn undo(self) {
         let mut all = true;
-        for (path, place) in self.moved.iter().rev() {
-            all &= fs::rename(place, path).is_ok();
+        for (path, destination) in self.moved.iter().rev() {
+            all &= fs::rename(destination, path).is_ok();
         }
         if all {
             let _ = files::remove(&self.folder);
@@ -116,7 +115,7 @@ impl SetAside {
     }
 }
 
-/// Removes what restarts have set aside: the run has a newer checkpoint now.
+/// Removes the files that restarts have set aside: the run has a newer checkpoint now.
 ///
 /// # Errors
 /// [`OutputError::Io`].

@@ -1,20 +1,20 @@
-//! Comma-separated values: lines to write, and tables that were read.
+//! Comma-separated values: lines to write, and tables read.
 
 use std::collections::HashMap;
 
 use csv::{Reader, ReaderBuilder, StringRecord, Trim, WriterBuilder};
 
-/// What a line with the units of the columns begins with.
+/// Beginning of the line with the units of the columns.
 const UNITS: &str = "# units:";
-/// What lines of comments begin with.
+/// Beginning of a comment.
 const COMMENT: u8 = b'#';
 
-/// Some values as one line with its end; those with commas, quotes or line ends are quoted.
+/// Values as one line with its end; those with commas, quotes or line ends are quoted.
 pub fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
     lines([values])
 }
 
-/// The same of several, each of them a line.
+/// Records as lines.
 pub(super) fn lines<T: AsRef<[u8]>>(
     records: impl IntoIterator<Item = impl IntoIterator<Item = T>>,
 ) -> Vec<u8> {
@@ -46,7 +46,7 @@ pub(super) fn rows(content: &[u8]) -> Reader<&[u8]> {
         .from_reader(content)
 }
 
-/// A table as it was read.
+/// A table read from text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sheet {
     /// Names of the columns.
@@ -59,11 +59,11 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// Takes a table apart: lines of `#` are comments, of which `# units: s,m,-` gives the units;
+    /// Parses a table: lines of `#` are comments, of which `# units: s,m,-` gives the units;
     /// the first other line names the columns.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message if it is not such a table.
     pub fn parse(text: &str) -> Result<Self, String> {
         let units = text.lines().find_map(|line| line.strip_prefix(UNITS));
         let mut records = records(text)?.into_iter();
@@ -78,19 +78,19 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// Of a table with a figure in each row (`time, measure, …, figure, value, …, unit`) that with a
-    /// row for each time and a column `MEASURE.FIGURE` for each figure; any other one as it is.
+    /// Converts a table with a figure in each row (`time, measure, …, figure, value, …, unit`) to one with
+    /// a row for each time and a column `MEASURE.FIGURE` for each figure; returns any other one as it is.
     #[must_use]
     pub fn widened(self) -> Self {
         let wanted = ["time", "measure", "figure", "value", "unit"];
-        let places = wanted.map(|name| self.names.iter().position(|own| own == name));
+        let indices = wanted.map(|name| self.names.iter().position(|own| own == name));
         let [
             Some(time),
             Some(measure),
             Some(figure),
             Some(value),
             Some(unit),
-        ] = places
+        ] = indices
         else {
             return self;
         };
@@ -144,7 +144,7 @@ fn records_of_line(line: &str) -> Result<Vec<String>, String> {
     Ok(first.map_or_else(Vec::new, |(_, cells)| cells))
 }
 
-/// Numbers of lines and cells of all that is no comment and not blank.
+/// Line numbers and cells of all records that are neither comments nor blank.
 fn records(text: &str) -> Result<Vec<(usize, Vec<String>)>, String> {
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
@@ -152,19 +152,19 @@ fn records(text: &str) -> Result<Vec<(usize, Vec<String>)>, String> {
         .comment(Some(COMMENT))
         .trim(Trim::All)
         .from_reader(text.as_bytes());
-    let mut found = Vec::new();
+    let mut records = Vec::new();
     let mut record = StringRecord::new();
     while (reader.read_record(&mut record)).map_err(|error| error.to_string())? {
         if record.len() == 1 && record[0].is_empty() {
             continue;
         }
         let number = record.position().map_or(0, |at| first_line(text, at));
-        found.push((number, record.iter().map(str::to_owned).collect()));
+        records.push((number, record.iter().map(str::to_owned).collect()));
     }
-    Ok(found)
+    Ok(records)
 }
 
-/// The line in which the next record from a place on begins.
+/// The line in which the next record after a position begins.
 fn first_line(text: &str, at: &csv::Position) -> usize {
     let begin = usize::try_from(at.byte()).unwrap_or(usize::MAX);
     let rest = text.get(begin..).unwrap_or_default();

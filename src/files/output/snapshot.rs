@@ -1,10 +1,10 @@
 //! Snapshots: the particles at one time as a VTKHDF file, for `ParaView`, `h5py` and the plots.
 //!
 //! One `UnstructuredGrid` of version 1.0, a vertex for each particle, rows in id order and cut into
-//! partitions of a fixed number: the content does not depend on ranks. `/whipple` says what was
-//! run; `/run` holds what does depend on ranks and clocks.
+//! partitions of a fixed number: the content does not depend on ranks. `/whipple` describes the case;
+//! `/run` holds what depends on ranks and clocks.
 
-mod form;
+mod format;
 mod grid;
 mod plan;
 mod values;
@@ -16,11 +16,11 @@ use comm::Comm;
 use model::{Case, Precision};
 use particles::{FieldKind, Owner, ParticleStore};
 
-use super::h5::read::PART;
+use super::h5::read::PORTION;
 use super::h5::{Element, RowType, Writer};
 pub use super::quantity::{Quantity, quantities, quantities_of};
-use super::{OutputError, Rows, VERSION, commit, files, settle, unit_of_model};
-pub use form::{Form, Part};
+use super::{OutputError, Rows, VERSION, commit, files, publish_or_remove, unit_of_model};
+pub use format::{Portion, SnapshotFormat};
 use grid::{GRID, write_grid};
 pub use plan::Plan;
 use values::write_values;
@@ -28,10 +28,10 @@ use values::write_values;
 /// Extension of snapshot files.
 pub const EXTENSION: &str = "vtkhdf";
 
-/// What a snapshot says beside the particles.
+/// Metadata of a snapshot.
 #[derive(Debug, Clone, Copy)]
 pub struct Meta<'a> {
-    /// What is run.
+    /// The case.
     pub case: &'a Case,
     /// Step number.
     pub step: u64,
@@ -41,12 +41,12 @@ pub struct Meta<'a> {
     pub threads: usize,
     /// Time since the start of the run (s).
     pub wall_seconds: f64,
-    /// Labels of fragments of this rank's particles, where these are shown; the last ones that have
-    /// none belong to no fragment.
+    /// Labels of fragments of this rank's particles, where the snapshot has these; the last particles,
+    /// which have none, belong to no fragment.
     pub fragments: &'a [u64],
 }
 
-/// Writes a snapshot, which appears under its name when it is whole. Collective.
+/// Writes a snapshot, which appears under its name once it is whole. Collective.
 ///
 /// # Errors
 /// The same on every rank; the old file of that name, if any, is then still there.
@@ -55,20 +55,20 @@ pub fn write(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    form: &Form,
+    format: &SnapshotFormat,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let temporary = files::partial(path);
-    let written = write_file(comm, &temporary, particles, meta, form, rows);
-    settle(comm, written, &temporary, || {
+    let written = write_file(comm, &temporary, particles, meta, format, rows);
+    publish_or_remove(comm, written, &temporary, || {
         files::publish(&temporary, path)
     })
 }
 
-/// Bytes of a particle in a snapshot: its place, its cell and what is told of it.
+/// Bytes of a particle in a snapshot: its position, its cell and its quantities.
 #[must_use]
-pub fn bytes_per_particle(form: &Form, particles: &ParticleStore) -> usize {
-    let real = match form.precision {
+pub fn bytes_per_particle(format: &SnapshotFormat, particles: &ParticleStore) -> usize {
+    let real = match format.precision {
         Precision::Double => 8,
         Precision::Single => 4,
     };
@@ -78,7 +78,7 @@ pub fn bytes_per_particle(form: &Form, particles: &ParticleStore) -> usize {
         Quantity::Fragment => 8,
         Quantity::VonMisesStress | Quantity::Temperature => real,
     };
-    let quantities = with_frozen(particles, form.quantities).map(bytes);
+    let quantities = with_frozen(particles, format.quantities).map(bytes);
     3 * real + grid::BYTES_OF_CELL + quantities.sum::<usize>()
 }
 
@@ -87,25 +87,25 @@ fn write_file(
     path: &Path,
     particles: &ParticleStore,
     meta: &Meta,
-    form: &Form,
+    format: &SnapshotFormat,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let ids = &particles.id[..particles.owned()];
-    match form.part.chosen(particles) {
+    match format.portion.chosen(particles) {
         Some(chosen) => rows.plan_of(comm, ids, chosen)?,
         None => rows.plan(comm, ids)?,
     }
     let mut file = Writer::create_aligned(comm, path, rows.sharing().alignment)?;
-    write_grid(comm, &mut file, particles, meta.time, form, rows)?;
-    for quantity in with_frozen(particles, form.quantities) {
-        let what = (quantity, form.precision);
-        write_quantity(comm, &mut file, particles, meta, what, rows)?;
+    write_grid(comm, &mut file, particles, meta.time, format, rows)?;
+    for quantity in with_frozen(particles, format.quantities) {
+        let precision = format.precision;
+        write_quantity(comm, &mut file, particles, meta, quantity, precision, rows)?;
     }
-    write_meta(comm, &mut file, meta, form)?;
+    write_meta(comm, &mut file, meta, format)?;
     file.close()
 }
 
-/// The quantities chosen, and which particles are frozen where any may be.
+/// The quantities chosen, and the field of frozen particles where there may be any.
 fn with_frozen(particles: &ParticleStore, chosen: &[Quantity]) -> impl Iterator<Item = Quantity> {
     let name = |quantity: &Quantity| quantity.name();
     let missing = particles.held(Owner::FREEZE).map(Quantity::Field);
@@ -118,7 +118,8 @@ fn write_quantity(
     file: &mut Writer,
     particles: &ParticleStore,
     meta: &Meta,
-    (quantity, precision): (Quantity, Precision),
+    quantity: Quantity,
+    precision: Precision,
     rows: &mut Rows,
 ) -> Result<(), OutputError> {
     let (block, case) = (rows.block(), meta.case);
@@ -136,7 +137,7 @@ fn write_quantity(
                 }
             }
         };
-        write_values(file, &path, (row, precision), block, &fill)
+        write_values(file, &path, row, precision, block, &fill)
     };
     match quantity {
         Quantity::Field(field) => write(field.kind, &particles.bytes_or_zeros(field))?,
@@ -188,8 +189,13 @@ fn row_type(kind: FieldKind) -> RowType {
     }
 }
 
-/// What was run, and by how many.
-fn write_meta(comm: &Comm, file: &mut Writer, meta: &Meta, form: &Form) -> Result<(), OutputError> {
+/// Writes the metadata of the case and of the run.
+fn write_meta(
+    comm: &Comm,
+    file: &mut Writer,
+    meta: &Meta,
+    format: &SnapshotFormat,
+) -> Result<(), OutputError> {
     let case = meta.case;
     let names: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
     let spacings: Vec<f64> = case.bodies.iter().map(|b| b.lattice.spacing).collect();
@@ -209,11 +215,11 @@ fn write_meta(comm: &Comm, file: &mut Writer, meta: &Meta, form: &Form) -> Resul
     let rigid: Vec<bool> = case.bodies.iter().map(|b| b.rigid.is_some()).collect();
     file.note(group, "rigid", &serde_json::json!(rigid).to_string())?;
     file.note(group, "symmetry", &serde_json::json!(planes).to_string())?;
-    if let Some(schedule) = form.schedule {
+    if let Some(schedule) = format.schedule {
         file.note(group, "schedule", schedule)?;
     }
-    if !form.part.is_all() {
-        file.note(group, PART, &form.part.text(case))?;
+    if !format.portion.is_all() {
+        file.note(group, PORTION, &format.portion.text(case))?;
     }
     file.note(group, "version", VERSION)?;
     file.note(group, "commit", commit())?;

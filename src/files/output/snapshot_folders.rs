@@ -1,4 +1,4 @@
-//! Where the snapshots of a run stand: the usual ones in their folder, those of each schedule in a
+//! Paths of the snapshots of a run: the default ones are in their folder, those of each schedule in a
 //! folder in it.
 
 use std::fs;
@@ -10,11 +10,11 @@ use super::run_folder::SNAPSHOT_ENDING;
 use super::{OutputError, RunFolder};
 
 impl RunFolder {
-    /// The folder of a schedule's snapshots, or of the usual ones.
+    /// The folder of a schedule's snapshots, or of the default ones.
     #[must_use]
     pub fn snapshots_of(&self, schedule: Option<&str>) -> PathBuf {
-        let usual = self.snapshots();
-        schedule.map_or(usual.clone(), |name| usual.join(name))
+        let default = self.snapshots();
+        schedule.map_or(default.clone(), |name| default.join(name))
     }
 
     /// The path of a schedule's snapshot.
@@ -31,7 +31,7 @@ impl RunFolder {
         self.snapshots_of(schedule).join(name)
     }
 
-    /// A schedule's snapshots that there are, in the order of steps.
+    /// A schedule's snapshots, in the order of steps.
     ///
     /// # Errors
     /// [`OutputError::Io`].
@@ -49,8 +49,8 @@ impl RunFolder {
     pub fn schedules(&self) -> Result<Vec<String>, OutputError> {
         let mut names = Vec::new();
         for path in names_in(&self.snapshots())? {
-            let kind = fs::symlink_metadata(&path).map_err(OutputError::io("read", &path))?;
-            if let (true, Some(name)) = (kind.is_dir(), path.file_name()) {
+            let meta = fs::symlink_metadata(&path).map_err(OutputError::io("read", &path))?;
+            if let (true, Some(name)) = (meta.is_dir(), path.file_name()) {
                 names.extend(name.to_str().map(str::to_owned));
             }
         }
@@ -58,7 +58,7 @@ impl RunFolder {
         Ok(names)
     }
 
-    /// The usual snapshots, and the schedules that have a folder.
+    /// The default snapshots, and the schedules that have a folder.
     pub(super) fn all_schedules(&self) -> Result<Vec<Option<String>>, OutputError> {
         let more = self.schedules()?.into_iter().map(Some);
         Ok(std::iter::once(None).chain(more).collect())

@@ -1,11 +1,11 @@
-//! `status.json`: what scripts that chain runs read, and what those who watch one see.
+//! `status.json`: the state of a run, for scripts that chain runs and for watching one.
 
 use std::io;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
 
-/// Where a run stands.
+/// Phase of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
@@ -35,25 +35,25 @@ impl Phase {
 /// `status.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Status {
-    /// Where the run stands.
+    /// Phase of the run.
     pub state: Phase,
     /// Last step.
     pub step: u64,
     /// Time reached (s).
     pub time: f64,
-    /// Why it stopped or failed.
+    /// Reason of a stop or failure.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reason: Option<String>,
     /// Exit code of the program, once it is over.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub exit_code: Option<u8>,
-    /// How it goes on, as rank 0 sees it.
+    /// Progress, as rank 0 sees it.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub outlook: Option<Outlook>,
 }
 
 impl Status {
-    /// A status without more than that.
+    /// A status without the optional entries.
     #[must_use]
     pub fn new(state: Phase, step: u64, time: f64) -> Self {
         Self {
@@ -77,14 +77,14 @@ impl Status {
     }
 }
 
-/// How a run goes on.
+/// Progress of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outlook {
-    /// When this was written (seconds since 1970, UTC).
+    /// Time of writing (seconds since 1970, UTC).
     pub written: u64,
     /// Seconds that this process has run.
     pub wall_seconds: f64,
-    /// Seconds that are left, once the first steps have shown how fast they are.
+    /// Seconds left, once the first steps have been timed.
     pub seconds_left: Option<f64>,
     /// Seconds that a step takes, the mean of this process.
     pub seconds_per_step: f64,
@@ -94,7 +94,7 @@ pub struct Outlook {
     pub max_steps: Option<u64>,
     /// Last time step (s).
     pub dt: f64,
-    /// What limited it.
+    /// The limit that set it.
     pub dt_reason: String,
     /// Number of ranks.
     pub ranks: usize,
@@ -117,13 +117,13 @@ pub struct Outlook {
 pub struct Energies {
     /// Times (s).
     pub time: Vec<f64>,
-    /// Kinetic.
+    /// Kinetic energy.
     pub kinetic: Vec<f64>,
-    /// Internal.
+    /// Internal energy.
     pub internal: Vec<f64>,
-    /// Of contact.
+    /// Energy of contact.
     pub contact: Vec<f64>,
-    /// All, that of gravity included.
+    /// Total energy, that of gravity included.
     pub total: Vec<f64>,
 }
 
@@ -146,7 +146,7 @@ impl Energies {
         }
     }
 
-    /// Drops what `keeps` refuses, by number.
+    /// Drops the entries, by number, that `keeps` refuses.
     pub fn retain(&mut self, keeps: impl Fn(usize) -> bool) {
         for list in self.lists() {
             let mut n = 0..;
@@ -154,7 +154,7 @@ impl Energies {
         }
     }
 
-    /// Whether there is one of each for each time.
+    /// Returns true if there is one of each energy for each time.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         let others = [&self.kinetic, &self.internal, &self.contact, &self.total];
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(serde_json::from_str::<Status>(&text).unwrap(), status);
     }
 
-    /// Of programs before there was more in it.
+    /// Written by programs that had fewer entries.
     #[test]
     fn an_older_status_is_read() {
         let text = r#"{"state": "stopped", "step": 3, "time": 0.5, "reason": "why"}"#;

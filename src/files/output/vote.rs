@@ -46,10 +46,10 @@ pub fn agree<T>(comm: &Comm, result: Result<T, OutputError>) -> Result<T, Output
     }
 }
 
-/// Lets rank 0 do something and gives every rank its verdict. Collective.
+/// Runs `task` on rank 0 and gives its verdict to every rank. Collective.
 ///
 /// # Errors
-/// What `task` returns, with the same text on every rank.
+/// The error of `task`, with the same text on every rank.
 pub fn on_root(
     comm: &Comm,
     task: impl FnOnce() -> Result<(), OutputError>,
@@ -57,12 +57,12 @@ pub fn on_root(
     agree(comm, if comm.is_root() { task() } else { Ok(()) })
 }
 
-/// Ends what all ranks have `written` under a temporary name: rank 0 publishes it if it is whole,
-/// else takes it away. Collective.
+/// Rank 0 publishes the temporary file that all ranks have `written` if it is whole, else removes it.
+/// Collective.
 ///
 /// # Errors
-/// That of writing or of publishing, with the same text on every rank.
-pub(super) fn settle(
+/// The error of writing or of publishing, with the same text on every rank.
+pub(super) fn publish_or_remove(
     comm: &Comm,
     written: Result<(), OutputError>,
     temporary: &Path,
@@ -72,30 +72,30 @@ pub(super) fn settle(
         if written.is_ok() {
             return publish();
         }
-        // What went wrong is told below; half of it only takes room.
+        // The error is returned below; half a file only takes space.
         let _ = files::remove(temporary);
         Ok(())
     })?;
     written
 }
 
-/// Lets rank 0 find something out and tells it to every rank: what steers collective calls must not
-/// be what each rank sees of a file system by itself. Collective.
+/// Runs `task` on rank 0 and gives its result to every rank: collective calls must not depend on what each
+/// rank sees of a file system by itself. Collective.
 ///
 /// # Errors
-/// What `task` returns, with the same text on every rank.
+/// The error of `task`, with the same text on every rank.
 ///
 /// # Panics
-/// If what is found is no plain data.
+/// If the result is no plain data.
 pub fn from_root<T: Serialize + DeserializeOwned>(
     comm: &Comm,
     task: impl FnOnce() -> Result<T, OutputError>,
 ) -> Result<T, OutputError> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     on_root(comm, || {
-        found = serde_json::to_vec(&task()?).expect("plain data");
+        result = serde_json::to_vec(&task()?).expect("plain data");
         Ok(())
     })?;
-    comm.broadcast(&mut found);
-    Ok(serde_json::from_slice(&found).expect("what rank 0 has written"))
+    comm.broadcast(&mut result);
+    Ok(serde_json::from_slice(&result).expect("what rank 0 has written"))
 }

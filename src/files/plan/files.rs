@@ -1,4 +1,4 @@
-//! How large the files of a run become, and how often they are written.
+//! Sizes and numbers of a run's files.
 
 use crate::output::OutputError;
 use crate::output::snapshot::{Plan, bytes_per_particle};
@@ -6,25 +6,25 @@ use engine::step::store_of;
 use model::{Case, OutputOptions};
 use particles::Life;
 
-/// What a run writes.
+/// Files of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Files {
-    /// Bytes of a usual snapshot.
+    /// Bytes of a default snapshot.
     pub snapshot: f64,
-    /// How many of them there will be.
+    /// Number of default snapshots.
     pub snapshots: f64,
     /// Bytes of all snapshots of schedules, as if each held all particles.
     pub further: f64,
     /// Bytes of a checkpoint.
     pub checkpoint: f64,
-    /// How many of them are written, by time and by steps.
+    /// Number of checkpoints written, by time and by steps.
     pub checkpoints: f64,
-    /// How many of them stay.
+    /// Number of checkpoints kept.
     pub kept: f64,
 }
 
 impl Files {
-    /// Of a run with so many particles and steps.
+    /// Files of a run with `particles` and `steps`.
     ///
     /// # Errors
     /// [`OutputError::UnknownField`].
@@ -34,7 +34,7 @@ impl Files {
         let (output, end) = (&case.output, case.run.end_time);
         let plans = Plan::all(case, &store)?;
         let sizes = plans.iter().map(|plan| {
-            let bytes = bytes_per_particle(&plan.form(), &store);
+            let bytes = bytes_per_particle(&plan.format(), &store);
             particles * bytes as f64
         });
         let sizes: Vec<f64> = sizes.collect();
@@ -57,14 +57,14 @@ impl Files {
         self.snapshots * self.snapshot + self.further + self.kept * self.checkpoint
     }
 
-    /// Bytes that are written in all.
+    /// Bytes written in all.
     #[must_use]
     pub fn written(&self) -> f64 {
         self.snapshots * self.snapshot + self.further + self.checkpoints * self.checkpoint
     }
 }
 
-/// Snapshots every so many seconds up to an end (s): the first and the last state are always written.
+/// Number of snapshots at an interval up to an end (s): the first and the last state are always written.
 fn times(every: Option<f64>, end: f64) -> f64 {
     let Some(every) = every.filter(|&every| every > 0.0) else {
         return 2.0;
@@ -78,7 +78,7 @@ fn times(every: Option<f64>, end: f64) -> f64 {
     1.0 + due + last
 }
 
-/// Checkpoints by time and by steps, and the last one; none by the clock.
+/// Number of checkpoints by time and by steps, and the last one; none by the clock.
 #[allow(clippy::cast_precision_loss, reason = "few")]
 fn checkpoints(output: &OutputOptions, end: f64, steps: f64) -> f64 {
     let by_time = output.checkpoint_every.map_or(0.0, |every| end / every);

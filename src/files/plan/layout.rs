@@ -1,4 +1,4 @@
-//! A case cut for a number of ranks: what each of them has and sends.
+//! Decomposition of a case for a number of ranks: particles and messages of each.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -17,37 +17,40 @@ use model::Case;
 use particles::Mirrors;
 use populate;
 
-/// What a rank has, and what it sends in a step but for particles that change ranks.
+/// Particles of a rank, and its messages in a step without particles that change ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Load {
-    /// What it owns and hears of others.
+    /// Particles that it owns and receives.
     pub tally: Tally,
-    /// All that it sends.
+    /// All messages that it sends.
     pub sent: Traffic,
-    /// What of it leaves its node.
+    /// Those that leave its node.
     pub beyond: Traffic,
 }
 
-/// A case cut for a number of ranks.
+/// Decomposition of a case for a number of ranks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// Who owns which place.
+    /// Regions of the ranks.
     pub slabs: NestedSlabs,
-    /// What each rank has and sends.
+    /// Particles and messages of each rank.
     pub loads: Vec<Load>,
-    /// The most of an even share of all particles that a rank will own as work is balanced.
+    /// Most particles of a rank over an even share of all as work is balanced.
     pub uneven: f64,
 }
 
 impl Layout {
-    /// Of particles, those of the start or those at a time (s), and what is foreseen of them, for so many ranks in slabs
-    /// of so many levels, or of those that the case takes by itself, where so many ranks that follow each other share a
-    /// node. `None` for a case without particles.
+    /// Of the initial particles, or of those at a time (s), with their prediction, for `ranks` ranks in slabs of `levels`
+    /// levels, or of those that the case takes by itself, where `ranks_per_node` consecutive ranks share a node. `None` for
+    /// a case without particles.
     #[must_use]
     pub fn new(
         case: &Case,
-        (particles, time, outlook): (&Particles, Option<f64>, &Outlook),
-        (ranks, levels): (usize, Option<usize>),
+        particles: &Particles,
+        time: Option<f64>,
+        outlook: &Outlook,
+        ranks: usize,
+        levels: Option<usize>,
         ranks_per_node: usize,
     ) -> Option<Self> {
         let cut = if time.is_none() {
@@ -66,7 +69,7 @@ impl Layout {
     }
 }
 
-/// The slabs that a run begins with on so many ranks, of so many levels or as many as the case has.
+/// The slabs that a run begins with on `ranks` ranks, of `levels` levels or as many as the case takes by itself.
 ///
 /// `None` for a case without particles.
 #[must_use]
@@ -79,14 +82,14 @@ pub fn slabs_at_start(
     let (solo, outset) = (Comm::solo(), Outset::new(case)?);
     let mut balance = Balance::default();
     let mut slabs = outset.slabs(case, &solo, (ranks, levels), &mut balance);
-    // As a run does that has dealt out what stands outside of the slabs it was made in.
+    // As a run does after it has distributed particles outside of the slabs that they were made in.
     if ranks > 1 && case.bodies.iter().any(populate::moves_sites) {
         cut(&mut slabs, particles, &mut balance);
     }
     Some(slabs)
 }
 
-/// The slabs that a run goes on with from some particles.
+/// The slabs that a run continues with from some particles.
 ///
 /// `None` for a case without particles.
 #[must_use]
@@ -111,7 +114,7 @@ fn cut(slabs: &mut NestedSlabs, particles: &Particles, balance: &mut Balance) {
     balance.cut(&Comm::solo(), slabs, all, &RankSpeeds::default());
 }
 
-/// The most of an even share of all particles that a rank is going to own, as work is balanced.
+/// Most particles of a rank over an even share of all, as work is balanced.
 #[allow(clippy::cast_precision_loss, reason = "a ratio")]
 fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Outlook) -> f64 {
     let ranks = slabs.ranks();
@@ -123,17 +126,17 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
     };
     let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
     let each = particles.positions.len() as f64 / ranks as f64;
-    let places = particles.positions.as_slice();
+    let positions = particles.positions.as_slice();
     let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
     let most = works.map(|work| {
         balance.cut(
             &Comm::solo(),
             &mut slabs,
-            (places, &work),
+            (positions, &work),
             &RankSpeeds::default(),
         );
         owned.fill_with(AtomicU64::default);
-        let owners = places.par_iter().map(|place| slabs.owner(place));
+        let owners = positions.par_iter().map(|position| slabs.owner(position));
         owners.for_each(|owner| {
             owned[owner].fetch_add(1, Relaxed);
         });
@@ -143,7 +146,7 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
     most.fold(UNEVEN, f64::max)
 }
 
-/// What each rank has and sends in a step, where so many that follow each other share a node.
+/// Particles and messages of each rank in a step, where `ranks_per_node` consecutive ranks share a node.
 #[must_use]
 pub fn loads(
     case: &Case,
@@ -155,7 +158,7 @@ pub fn loads(
     loads_of(case, particles, slabs, ranks_per_node, &bytes)
 }
 
-/// The same with messages of so many `bytes` a halo particle: a search has the first of those of a step alone.
+/// As [`loads`] with messages of `bytes` a halo particle: a search has the first of those of a step alone.
 #[must_use]
 pub fn loads_of(
     case: &Case,
@@ -187,7 +190,7 @@ pub fn loads_of(
     loads
 }
 
-/// What a rank sends to a peer in a step: a size, then messages of so many bytes a particle.
+/// Traffic of a rank to a peer in a step: a size, then messages of `bytes` a particle.
 fn traffic_of(sent: Sent, bytes: &[usize]) -> Traffic {
     let mut traffic = Traffic::OF_SIZE;
     for &bytes in bytes {

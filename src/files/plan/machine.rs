@@ -1,4 +1,4 @@
-//! What a plan must know of a machine, and the file that tells it.
+//! The constants of a machine, and their file.
 
 use std::fmt::Write as _;
 
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::sharing::Sharing;
 
-/// How fast a machine is, in SI units.
+/// Speeds of a machine, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Machine {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Cores of a node.
     pub cores_per_node: f64,
@@ -18,9 +18,9 @@ pub struct Machine {
     pub particle_time: f64,
     /// Time of one core for a step of an image or of another rank's particle (s).
     pub image_time: f64,
-    /// Part of the time of a step that each further thread of a rank adds to all.
+    /// Fraction of the time of a step that each further thread of a rank adds to all.
     pub thread_loss: f64,
-    /// Part by which a core is slower while all cores of its node are at work.
+    /// Fraction by which a core is slower while all cores of its node are busy.
     pub crowding: f64,
     /// Time of a message between two nodes (s).
     pub latency: f64,
@@ -30,23 +30,23 @@ pub struct Machine {
     pub node_latency: f64,
     /// Bytes that ranks of one node send each other in a second.
     pub node_bandwidth: f64,
-    /// Time that each doubling of the number of ranks adds to a step (s): what all agree on.
+    /// Time that each doubling of the number of ranks adds to a step (s), by collective calls.
     pub agreement_time: f64,
-    /// Part of the computing time in which messages fly.
+    /// Fraction of the computing time in which messages are transferred.
     pub overlap: f64,
     /// Bytes that all ranks together write in a second.
     pub disk_bandwidth: f64,
-    /// Bytes of memory that the ranks of a node may take together; infinite where nobody told.
+    /// Bytes of memory that the ranks of a node may take together; infinite if unknown.
     pub memory_per_node: f64,
     /// The longest time (s) that a batch job may ask for.
     pub longest_job: f64,
 }
 
-/// A number of a machine: its key, what it is, where it stands, and what it may be.
+/// A number of a machine: its key, description, accessor and range.
 pub struct Constant {
     /// Its key in the file.
     pub key: &'static str,
-    /// What it is, with its unit.
+    /// Its unit and description.
     pub what: &'static str,
     get: fn(&mut Machine) -> &mut f64,
     range: [f64; 2],
@@ -145,8 +145,8 @@ pub const CONSTANTS: [Constant; 14] = [
 ];
 
 impl Default for Machine {
-    /// An ordinary cluster: times of a core as the page on performance tells them, nodes of 128 cores
-    /// with a network of 200 Gbit/s.
+    /// An ordinary cluster: times of a core from the page on performance, nodes of 128 cores with a network
+    /// of 200 Gbit/s.
     fn default() -> Self {
         Self {
             name: "an ordinary cluster".to_owned(),
@@ -169,7 +169,7 @@ impl Default for Machine {
 }
 
 impl Machine {
-    /// A machine on which steps take so many times the work for the same particles.
+    /// A machine on which steps take `times` the work for the same particles.
     #[must_use]
     pub fn at_work(self, times: f64) -> Self {
         Self {
@@ -179,16 +179,16 @@ impl Machine {
         }
     }
 
-    /// What a file tells; what it leaves out is that of an ordinary cluster.
+    /// Parses a file; numbers that it leaves out are those of an ordinary cluster.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// A message if the text is wrong.
     pub fn parse(text: &str) -> Result<Self, String> {
         let machine: Self = toml::from_str(text).map_err(|error| error.to_string())?;
         let mut numbers = machine.clone();
         for constant in &CONSTANTS {
             let (value, [least, most]) = (*constant.of(&mut numbers), constant.range);
-            // What is no number is in no range.
+            // NaN is in no range.
             if !(least..=most).contains(&value) {
                 let key = constant.key;
                 return Err(format!("{key} is {value}; it may be {least:e} to {most:e}"));
@@ -210,7 +210,7 @@ impl Machine {
         text
     }
 
-    /// The same with one constant twice as large.
+    /// The machine with one constant twice as large.
     #[must_use]
     pub fn doubled(&self, constant: &Constant) -> Self {
         let mut machine = self.clone();
@@ -218,7 +218,7 @@ impl Machine {
         machine
     }
 
-    /// How many ranks of so many threads a node has.
+    /// Number of ranks of `threads` threads on a node.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,
@@ -243,7 +243,7 @@ impl Machine {
 }
 
 impl Constant {
-    /// Where it stands in a machine.
+    /// Its value in a machine.
     pub fn of<'a>(&self, machine: &'a mut Machine) -> &'a mut f64 {
         (self.get)(machine)
     }

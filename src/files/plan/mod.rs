@@ -1,5 +1,5 @@
-//! What a case takes on any number of ranks, told by one process: what each rank has and sends, how
-//! long a step takes, and the files.
+//! Predicted costs of a case on any number of ranks, by one process: particles and messages of each rank,
+//! time of a step, and files.
 
 mod files;
 mod layout;

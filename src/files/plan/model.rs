@@ -1,8 +1,8 @@
-//! How long a step takes.
+//! Time of a step.
 //!
 //! A rank with n particles and m images takes `n t_p + m t_i` of one core, shared by its threads. Its
-//! messages take their latencies, and what all ranks of a node send takes its bandwidth, but for
-//! what flies while it computes. The slowest rank makes the step, with what all of them agree on.
+//! messages take their latencies, and the bytes of all ranks of a node take its bandwidth, except for
+//! messages that overlap with computing. The slowest rank and the collective calls determine the step.
 
 use super::layout::Load;
 use super::machine::Machine;
@@ -12,9 +12,9 @@ use comm::Traffic;
 /// Times of a step (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct StepTime {
-    /// Of the slowest rank in computing.
+    /// Computing of the slowest rank.
     pub computing: f64,
-    /// All of the step.
+    /// The whole step.
     pub all: f64,
 }
 
@@ -52,7 +52,7 @@ pub fn computing(load: &Load, machine: &Machine) -> f64 {
     tally.owned as f64 * machine.particle_time + tally.images as f64 * machine.image_time
 }
 
-/// How many times as long as one core alone a rank takes to compute.
+/// Computing time of a rank over that of one core alone.
 #[allow(clippy::cast_precision_loss, reason = "few cores")]
 fn crowded(ranks: usize, machine: &Machine, sharing: Sharing) -> f64 {
     let threads = sharing.threads as f64;
@@ -63,7 +63,7 @@ fn crowded(ranks: usize, machine: &Machine, sharing: Sharing) -> f64 {
 }
 
 impl Load {
-    /// What it sends to ranks of its own node.
+    /// Traffic to ranks of its own node.
     #[must_use]
     pub fn within(&self) -> Traffic {
         self.sent - self.beyond

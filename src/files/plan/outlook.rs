@@ -1,4 +1,4 @@
-//! What is foreseen of a run: its steps, and what of its matter waits for a wave.
+//! Prediction of a run: its steps, and the particles that wait for a wave.
 
 use rayon::prelude::*;
 
@@ -7,31 +7,30 @@ use crate::preflight::{self, Approach, TIMES, Waiting, Waves, approaches, mean_w
 use model::Case;
 
 /// Work of a particle where smoothing lengths differ from body to body, and where they differ within one, over that where all
-/// are the same: each pair has a length of its own, and lists are made as far as the largest reach. As measured on the quarter
-/// impact with a sphere of other particles, and with a graded plate whose particles differ by a factor of two.
+/// are equal: each pair has a length of its own, and lists extend to the largest range. Measured on the quarter impact with a
+/// sphere of other particles, and with a graded plate whose particles differ by a factor of two.
 const UNEQUAL: [f64; 2] = [1.1, 1.5];
 
-/// What is foreseen of a run from a time on.
+/// Prediction of a run from a time on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outlook {
-    /// Steps to its end, where anything tells.
+    /// Steps to its end, if they can be predicted.
     pub steps: Option<f64>,
-    /// Work of these steps, over what it would be if all matter moved.
+    /// Work of these steps over that if all particles moved.
     pub share_of_work: f64,
-    /// By particle, at which of the times it waits; `None` where nothing does.
+    /// By particle, the times at which it waits; `None` if none does.
     waiting: Option<Vec<Waiting>>,
 }
 
 impl Outlook {
-    /// Of particles, those of the start or those at a time (s).
+    /// Of the initial particles, or of those at a time (s).
     #[must_use]
     pub fn new(case: &Case, particles: &Particles, time: Option<f64>) -> Self {
         let (from, approaches) = (time.unwrap_or(0.0), approaches(case));
         let times = Waves::times(case, from);
         let waiting = Waves::new(case, &approaches).map(|waves| {
-            let places = particles.body.par_iter().zip(&particles.positions);
-            places
-                .map(|(&body, place)| waves.waiting(body as usize, place, &times))
+            let all = particles.body.par_iter().zip(&particles.positions);
+            all.map(|(&body, position)| waves.waiting(body as usize, position, &times))
                 .collect::<Vec<_>>()
         });
         Self {
@@ -41,7 +40,7 @@ impl Outlook {
         }
     }
 
-    /// Work of the particles at each of the times, in per cent of that of what moves; `None` where nothing rests.
+    /// Work of the particles at each of the times, in per cent of that of a moving one; `None` if none rests.
     pub(super) fn works(&self) -> Option<impl Iterator<Item = Vec<u32>>> {
         #[allow(
             clippy::cast_possible_truncation,
@@ -57,7 +56,7 @@ impl Outlook {
     }
 }
 
-/// Steps of a case whose bodies meet so, from a time (s) on, as far as they are foreseen.
+/// Predicted steps of a case with these approaches from a time (s) on.
 #[must_use]
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn expected_steps(case: &Case, approaches: &[Approach], time: f64) -> Option<f64> {
@@ -66,7 +65,7 @@ pub fn expected_steps(case: &Case, approaches: &[Approach], time: f64) -> Option
     Some(by_time.min(most).round())
 }
 
-/// Work of a particle of a case over that of one among equals.
+/// Work of a particle of a case over that of one among equal particles.
 #[must_use]
 pub fn work_of_unequal(case: &Case) -> f64 {
     let bodies = || case.bodies.iter().filter(|body| body.rigid.is_none());
@@ -81,7 +80,7 @@ pub fn work_of_unequal(case: &Case) -> f64 {
     }
 }
 
-/// Work of all steps of a case whose bodies meet so, over what it would be if all matter moved, from some of its places.
+/// Work of all steps of a case with these approaches over that if all particles moved, from a sample of positions.
 #[must_use]
 pub fn share_of_work(case: &Case, approaches: &[Approach]) -> f64 {
     Waves::new(case, approaches).map_or(1.0, |waves| waves.share_of_work(case, 0.0))

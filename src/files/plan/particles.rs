@@ -1,4 +1,4 @@
-//! Where particles stand, and how far they reach.
+//! Positions and ranges of particles.
 
 use engine::sph::Smoothing;
 use model::{Body, Case, Quantity, SphForm, edge};
@@ -7,16 +7,16 @@ use populate;
 /// Particles of a case at one time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Particles {
-    /// Where they stand (m).
+    /// Positions (m).
     pub positions: Vec<[f64; 3]>,
-    /// How far each reaches (m): two of them see each other within the sum.
+    /// Range of each (m): two particles interact within the sum of theirs.
     pub reach: Vec<f64>,
     /// Their bodies.
     pub body: Vec<u32>,
 }
 
 impl Particles {
-    /// Those that a case begins with, stress points among them.
+    /// The initial particles of a case, stress points included.
     #[must_use]
     pub fn at_start(case: &Case) -> Self {
         let smoothing = Smoothing::new(case);
@@ -24,15 +24,14 @@ impl Particles {
         for (b, body) in case.bodies.iter().enumerate() {
             let whole = case.particle_mass(body);
             for site in populate::sites(body, case.dimension, &case.symmetry, None) {
-                let told = told_mass(body, site.index);
-                let mass = told.unwrap_or(whole * site.share);
+                let mass = mass_in_file(body, site.index).unwrap_or(whole * site.share);
                 let length = body.smoothing_length * edge(site.share, case.dimension);
                 particles.add(b, site.position, smoothing.reach_of(b, mass, length));
             }
             if case.sph.form != SphForm::StressPoints {
                 continue;
             }
-            // They have no mass of their own.
+            // Stress points have no mass of their own.
             let reach = smoothing.reach_of(b, 0.0, body.smoothing_length);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, None) {
                 particles.add(b, site.position, reach);
@@ -41,11 +40,11 @@ impl Particles {
         particles
     }
 
-    /// Saved ones of a case: position (m), body, mass (kg), and the smoothing length (m), zero for that
+    /// Saved particles of a case: position (m), body, mass (kg), and the smoothing length (m), zero for that
     /// of the start, or the density (kg/m³) that it follows.
     ///
     /// # Errors
-    /// Where one is of a body that there is not.
+    /// If one is of a body that does not exist.
     pub fn of(
         case: &Case,
         rows: impl Iterator<Item = ([f64; 3], usize, f64, Result<f64, f64>)>,
@@ -65,14 +64,14 @@ impl Particles {
         Ok(particles)
     }
 
-    /// Takes in more.
+    /// Appends other particles.
     pub fn append(&mut self, mut more: Self) {
         self.positions.append(&mut more.positions);
         self.reach.append(&mut more.reach);
         self.body.append(&mut more.body);
     }
 
-    /// Takes in one more, of a body, at a position (m), which reaches so far (m).
+    /// Adds a particle of a body at a position (m) with a range (m).
     pub fn add(&mut self, body: usize, position: [f64; 3], reach: f64) {
         self.positions.push(position);
         self.reach.push(reach);
@@ -80,8 +79,8 @@ impl Particles {
     }
 }
 
-/// What a file tells of the mass (kg) of a particle.
-fn told_mass(body: &Body, index: u64) -> Option<f64> {
+/// The mass (kg) of a particle in the file of its body, if it has one.
+fn mass_in_file(body: &Body, index: u64) -> Option<f64> {
     let (cloud, _) = body.cloud()?;
     let row = usize::try_from(index).ok()?;
     match cloud.get(Quantity::Mass, row) {

@@ -1,4 +1,4 @@
-//! What a step takes, from counts along the axes alone: soon told of any number of particles.
+//! Time of a step from counts along the axes alone, which is fast for any number of particles.
 
 use super::layout::Load;
 use super::machine::Machine;
@@ -13,7 +13,7 @@ use model::Case;
 /// Peers of a rank in boxes: those around a box of three axes.
 const PEERS: u64 = 26;
 
-/// Seconds of a mean step on so many ranks of a machine, each with one thread and as much to do.
+/// Seconds of a mean step on `ranks` ranks of a machine, each with one thread and an even share of the work.
 #[must_use]
 #[allow(
     clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! What a plan tells of a number of ranks in slabs of some levels.
+//! A row of a plan: a number of ranks in slabs of some levels.
 
 use super::layout::{Layout, Load};
 use super::machine::Machine;
@@ -9,20 +9,20 @@ use crate::preflight::Costs;
 use engine::domain::{Decomposition, NestedSlabs};
 use populate::Brick;
 
-/// What a plan tells of a number of ranks; `most` is the largest of them.
+/// Figures of a number of ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Row {
-    /// How many ranks.
+    /// Number of ranks.
     pub ranks: usize,
-    /// How they share nodes.
+    /// Their threads and nodes.
     pub sharing: Sharing,
     /// Levels of their slabs.
     pub levels: usize,
-    /// Mean number of particles, and the most.
+    /// Mean and largest number of particles.
     pub owned: [f64; 2],
     /// Most particles of other ranks.
     pub halo: f64,
-    /// What of them there would be if matter as dense filled the model about that rank.
+    /// Number of these if particles as dense filled the model around that rank.
     pub halo_of_box: f64,
     /// Most peers.
     pub peers: f64,
@@ -32,19 +32,21 @@ pub struct Row {
     pub bytes: f64,
     /// Bytes that the largest rank takes.
     pub memory: f64,
-    /// Of a step.
+    /// Time of a step.
     pub time: StepTime,
     /// Time of one core with all particles over the time of all cores.
     pub efficiency: f64,
 }
 
 impl Row {
-    /// Of particles that are dealt out to ranks, all of which are the `work` of one core (s a step).
+    /// Of particles that are distributed over ranks, all of which are the `work` of one core (s a step).
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     pub fn new(
-        (particles, layout): (&Particles, &Layout),
-        (machine, sharing): (&Machine, Sharing),
+        particles: &Particles,
+        layout: &Layout,
+        machine: &Machine,
+        sharing: Sharing,
         costs: Costs,
         work: f64,
     ) -> Self {
@@ -90,8 +92,8 @@ impl Row {
     }
 }
 
-/// What stands about the region of a rank within the range of two particles, over what is in it, in a
-/// box about all particles that is filled evenly.
+/// Particles around the region of a rank within the range of two particles, over those in it, in a box
+/// around all particles that is filled evenly.
 fn halo_of_box(particles: &Particles, slabs: &NestedSlabs, rank: usize) -> f64 {
     let mut all = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for position in &particles.positions {
@@ -104,7 +106,7 @@ fn halo_of_box(particles: &Particles, slabs: &NestedSlabs, rank: usize) -> f64 {
     let region = slabs.region(rank);
     // An axis along which there is but one layer does not count.
     let axes = (0..3).filter(|&a| all.1[a] > all.0[a]);
-    // Whatever stands in a slab, it has a layer.
+    // A slab has at least one layer.
     let length = |brick: &Brick, a: usize| {
         let length = brick.upper[a].min(all.1[a]) - brick.lower[a].max(all.0[a]);
         length.max(reach)

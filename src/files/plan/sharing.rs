@@ -1,6 +1,6 @@
-//! How ranks share a machine.
+//! Sharing of a machine by ranks.
 
-/// How ranks share a machine.
+/// Sharing of a machine by ranks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sharing {
     /// Threads of each rank.

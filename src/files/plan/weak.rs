@@ -1,4 +1,4 @@
-//! The same model with finer particles, so that each rank has as many as on fewer ranks.
+//! Weak scaling: the same model with finer particles, so that each rank has as many as on fewer ranks.
 
 use super::layout::Load;
 use super::machine::Machine;
@@ -10,7 +10,7 @@ use engine::domain::Tally;
 /// A step of a refined model.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Weak {
-    /// How many ranks.
+    /// Number of ranks.
     pub ranks: usize,
     /// Levels of their slabs.
     pub levels: usize,
@@ -21,25 +21,26 @@ pub struct Weak {
 }
 
 impl Weak {
-    /// Of ranks with these loads in slabs of so many levels, refined to so many particles each.
+    /// Of ranks with these loads in slabs of `levels` levels, refined to `each` particles a rank.
     #[must_use]
     pub fn new(
         loads: &[Load],
         levels: usize,
         each: f64,
-        (machine, sharing): (&Machine, Sharing),
+        machine: &Machine,
+        sharing: Sharing,
     ) -> Self {
         let fine = refined(loads, levels, each);
         Self {
             levels,
-            ..Self::of_refined(&fine, each, (machine, sharing))
+            ..Self::of_refined(&fine, each, machine, sharing)
         }
     }
 
-    /// Of loads that are refined to so many particles each already.
+    /// Of loads that are refined to `each` particles a rank already.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
-    pub fn of_refined(fine: &[Load], each: f64, (machine, sharing): (&Machine, Sharing)) -> Self {
+    pub fn of_refined(fine: &[Load], each: f64, machine: &Machine, sharing: Sharing) -> Self {
         let time = step_time(fine, machine, sharing).all;
         let halo: u64 = fine.iter().map(|load| load.tally.halo).sum();
         Self {
@@ -51,7 +52,7 @@ impl Weak {
     }
 }
 
-/// The loads of a model whose particles are so much finer that ranks have so many in the mean.
+/// The loads of a model with finer particles, of which ranks have `each` in the mean.
 ///
 /// Shares are uneven by whole layers of particles, which become thinner. A halo of r times as many particles is taken for that
 /// of a box which is cut along as many axes as there are levels, `1 + r = (1 + u)^levels`, of which u shrinks as the
@@ -66,7 +67,7 @@ pub fn refined(loads: &[Load], levels: usize, each: f64) -> Vec<Load> {
     let fine = |load: &Load| {
         let before = load.tally.owned as f64;
         let owned = each * (1.0 + (before / mean - 1.0) * shorter);
-        // By how much a number of particles of others grows.
+        // Growth of a number of particles of others.
         let growth = |others: u64| {
             if others == 0 {
                 return 1.0;

@@ -1,11 +1,11 @@
-//! When bodies meet, as far as their initial velocities tell.
+//! Times at which bodies meet, from their initial velocities.
 
 use model::{Body, Case, Vec3};
 use populate::{self, Wanted, search};
 
 /// Bodies closer than this many spacings touch.
 const TOUCH: f64 = 0.1;
-/// Most steps of a body towards another; each goes as far as nothing can be in the way.
+/// Most steps of a body towards another; each goes as far as no contact is possible.
 const MOST_STEPS: usize = 200;
 
 /// Smallest and largest coordinates (m) of a body's particles.
@@ -16,16 +16,16 @@ pub(super) type Ends = ([f64; 3], [f64; 3]);
 pub struct Approach {
     /// Their indices.
     pub bodies: [usize; 2],
-    /// Room between them at the start, beyond that of bodies in touch, in mean spacings; may be
-    /// infinite if they never come near.
+    /// Initial gap between them, beyond that of touching bodies, in mean spacings; may be infinite if they
+    /// never come near.
     pub gap: f64,
     /// Their relative speed (m/s).
     pub speed: f64,
-    /// When they touch (s); infinite if never.
+    /// Time of touch (s); infinite if never.
     pub time: f64,
 }
 
-/// All pairs of bodies whose velocities are constant until something is met.
+/// All pairs of bodies whose velocities are constant until they meet another.
 #[must_use]
 pub fn approaches(case: &Case) -> Vec<Approach> {
     let mut found = Vec::new();
@@ -41,7 +41,7 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
     found
 }
 
-/// Whether a body has one velocity, and nothing but other bodies changes its velocity.
+/// Returns true if a body has one velocity, which nothing but other bodies changes.
 pub fn flies_straight(case: &Case, body: usize) -> bool {
     let driven = case.loads.velocities.iter().any(|load| load.body == body);
     let motion = case.bodies[body].rigid.as_ref();
@@ -61,7 +61,7 @@ fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<A
     let spacing = 0.5 * (first.lattice.spacing + second.lattice.spacing);
     // Shapes reach a little beyond their particles.
     let until = last_meeting([boxes[a]?, boxes[b]?], velocity, 4.0 * spacing);
-    let mut found = Approach {
+    let mut approach = Approach {
         bodies: [a, b],
         gap: f64::INFINITY,
         speed: velocity.norm(),
@@ -70,15 +70,15 @@ fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<A
     if until >= 0.0 {
         for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
             let (gap, time) = towards(case, [body, target], velocity, until);
-            found.gap = found.gap.min(gap / spacing);
-            found.time = found.time.min(time);
+            approach.gap = approach.gap.min(gap / spacing);
+            approach.time = approach.time.min(time);
         }
     }
-    Some(found)
+    Some(approach)
 }
 
-/// The smallest distance (m) of the particles of a body from where they touch another, and the
-/// first time (s) at which one does, moving at `velocity` (m/s); infinite if not `until` then (s).
+/// The smallest distance (m) of the particles of a body from touching another, and the first time (s)
+/// at which one touches, moving at `velocity` (m/s); infinite if later than `until` (s).
 fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) -> (f64, f64) {
     let near = TOUCH * body.lattice.spacing;
     let start = nearest(case, body, target, Vec3::zeros());
@@ -96,8 +96,7 @@ fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) 
     (start, f64::INFINITY)
 }
 
-/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from where they
-/// touch `target`.
+/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from touching `target`.
 fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
     let (shape, dimension) = (&target.shape, case.dimension);
     let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
@@ -121,8 +120,8 @@ fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
     nearest - 0.5 * body.lattice.spacing
 }
 
-/// Until when (s) two boxes, of which the first one moves at `velocity` (m/s), are no farther apart
-/// than `near` (m) along any axis; negative if they never are.
+/// The last time (s) at which two boxes, of which the first one moves at `velocity` (m/s), are no
+/// farther apart than `near` (m) along any axis; negative if there is none.
 fn last_meeting(boxes: [Ends; 2], velocity: Vec3, near: f64) -> f64 {
     let [(lower, upper), (other_lower, other_upper)] = boxes;
     let mut window = [0.0, f64::INFINITY];

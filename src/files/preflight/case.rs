@@ -1,30 +1,30 @@
-//! Mistakes of physics that a case as a whole can have.
+//! Physical mistakes of a case as a whole.
 
 use super::approach::{Approach, flies_straight};
 use model::readable::shown;
 use model::{Body, Case, ContactMode};
 
-/// Fewer particles than this across the thinnest part resolve no bending and no wave.
+/// Fewer particles than this across the thinnest section resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
-/// A stiffness of contact so many times above or below its default is a slip.
+/// A stiffness of contact this many times above or below its default is a mistake.
 const FAR: f64 = 10.0;
 
 /// Bodies that meet without contact, and a run that ends before anything meets.
-pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
     let end = case.run.end_time;
     let names = |pair: &Approach| pair.bodies.map(|body| case.bodies[body].name.as_str());
     for pair in approaches.iter().filter(|pair| pair.time < end) {
         let [a, b] = pair.bodies;
         if matches!(case.contact_between(a, b), ContactMode::None) {
             let [a, b] = names(pair);
-            found.push(format!(
+            messages.push(format!(
                 "`{a}` and `{b}` meet at {} and have contact of mode \"none\": they pass through \
                  each other",
                 seconds(pair.time)
             ));
         }
     }
-    // What is driven, falls or stands before a plane has something to do without an impact.
+    // Bodies that are driven, fall or meet their mirror images move without an impact.
     let acting = case.load_names().count() - case.loads.absorbers.len();
     let driven = acting > 0;
     let straight = (0..case.bodies.len()).all(|body| flies_straight(case, body));
@@ -44,7 +44,7 @@ pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
         .filter(|pair| pair.time >= end);
     if let Some(pair) = first {
         let [a, b] = names(pair);
-        found.push(if pair.time.is_finite() {
+        messages.push(if pair.time.is_finite() {
             format!(
                 "nothing meets: `{a}` reaches `{b}`, {:.1} spacings away, at {}, after the end at {}",
                 pair.gap,
@@ -58,12 +58,12 @@ pub fn meetings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
 }
 
 /// Bodies with too few particles across.
-pub fn thin_parts(case: &Case, found: &mut Vec<String>) {
+pub fn thin_sections(case: &Case, messages: &mut Vec<String>) {
     for body in case.bodies.iter().filter(|body| body.rigid.is_none()) {
         let across = thickness(body, case) / body.lattice.spacing;
-        // A layer more or less is what rounding does.
+        // Rounding may add or remove a layer.
         if across < ACROSS - 0.01 {
-            found.push(format!(
+            messages.push(format!(
                 "`{}` has {across:.1} particles across its thinnest part; fewer than {ACROSS} \
                  resolve neither waves nor bending: make its spacing finer",
                 body.name
@@ -72,7 +72,7 @@ pub fn thin_parts(case: &Case, found: &mut Vec<String>) {
     }
 }
 
-/// Thickness of the thinnest part (m) with what a symmetry plane mirrors.
+/// Thickness of the thinnest section (m), mirror images behind symmetry planes included.
 fn thickness(body: &Body, case: &Case) -> f64 {
     let mut shape = body.shape.clone();
     if let model::Shape::Box { lower, upper } = &mut shape {
@@ -87,31 +87,33 @@ fn thickness(body: &Body, case: &Case) -> f64 {
 }
 
 /// Contact far stiffer or softer than the materials.
-pub fn stiffness(case: &Case, found: &mut Vec<String>) {
+pub fn stiffness(case: &Case, messages: &mut Vec<String>) {
     let modes = std::iter::once(&case.default_contact).chain(case.contacts.iter().map(|p| &p.mode));
     let defaults = ContactMode::with_forces();
-    let mut told: Vec<(&str, f64)> = Vec::new();
+    let mut reported: Vec<(&str, f64)> = Vec::new();
     for mode in modes {
         let default = mode.class().map(|class| &defaults[class as usize]);
         let (Some(law), Some(default)) = (mode.law(), default.and_then(ContactMode::law)) else {
             continue;
         };
-        let (stiffness, usual) = (law.stiffness(), default.stiffness());
+        let (stiffness, default_stiffness) = (law.stiffness(), default.stiffness());
         let name = mode.name();
-        if (usual / FAR..=usual * FAR).contains(&stiffness) || told.contains(&(name, stiffness)) {
+        if (default_stiffness / FAR..=default_stiffness * FAR).contains(&stiffness)
+            || reported.contains(&(name, stiffness))
+        {
             continue;
         }
-        told.push((name, stiffness));
-        let what = if stiffness > usual {
+        reported.push((name, stiffness));
+        let what = if stiffness > default_stiffness {
             "stiffer than the materials, and small steps are its price"
         } else {
             "softer than the materials, so that bodies sink into each other"
         };
-        found.push(format!(
-            "`contact.{name}.stiffness` is {stiffness}, {:.0} times {}its default of {usual}: contact \
+        messages.push(format!(
+            "`contact.{name}.stiffness` is {stiffness}, {:.0} times {}its default of {default_stiffness}: contact \
              is {what}",
-            (stiffness / usual).max(usual / stiffness),
-            if stiffness > usual { "" } else { "below " },
+            (stiffness / default_stiffness).max(default_stiffness / stiffness),
+            if stiffness > default_stiffness { "" } else { "below " },
         ));
     }
 }

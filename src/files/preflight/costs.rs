@@ -1,4 +1,4 @@
-//! What a rank takes of memory by what it has.
+//! Memory of a rank from its numbers of particles.
 
 use super::waves::{RESTING, can_rest};
 use engine::contact::ContactTable;
@@ -6,24 +6,24 @@ use engine::domain::MOST_UNEVEN;
 use engine::step::bytes_of_options;
 use model::Case;
 
-/// What a process takes with MPI and HDF5 before it has a particle (bytes). This and the figures
-/// below are peaks of the resident memory of ranks that step and write, as measured on the quarter
+/// Memory of a process with MPI and HDF5 before it has a particle (bytes). This and the figures
+/// below are peaks of the resident memory of ranks that step and write, measured on the quarter
 /// impact with 48,000 and 195,000 particles on one to four ranks.
 const PROCESS: f64 = 41.5e6;
 /// An owned particle with its lists, those of glass, and buffers (bytes).
 const OWNED: f64 = 700.0;
-/// What contact between bodies and images behind symmetry planes add (bytes).
+/// Addition for contact between bodies and images behind symmetry planes (bytes).
 const CONTACT: f64 = 170.0;
 /// A halo particle with its lists and messages (bytes).
 const HALO: f64 = 1200.0;
-/// What arrays take over their content as they grow.
+/// Capacity of growing arrays over their content.
 const SPARE: f64 = 1.06;
 
-/// By how much a rank's share rises as work is balanced that all move in: what is broken or touches takes more.
+/// Rise of a rank's share of moving particles as work is balanced: broken or touching ones take more.
 pub const UNEVEN: f64 = 1.2;
 
-/// By how much the share of one of so many ranks may rise: matter at rest takes less work, so that a rank gets more of it,
-/// but no more than balances allow.
+/// Most rise of the share of one of `ranks` ranks: particles at rest take less work, so that a rank gets more of them, but
+/// no more than balances allow.
 #[allow(clippy::cast_precision_loss, reason = "few ranks")]
 pub(super) fn uneven(case: &Case, ranks: usize) -> f64 {
     if case.domain.balance_every == 0 || ranks < 2 {
@@ -38,7 +38,7 @@ pub(super) fn uneven(case: &Case, ranks: usize) -> f64 {
     most.min(MOST_UNEVEN as f64)
 }
 
-/// What a rank takes at its peak (bytes).
+/// Peak memory of a rank (bytes).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Costs {
     /// Before it has a particle.
@@ -50,7 +50,7 @@ pub struct Costs {
 }
 
 impl Costs {
-    /// Of a case.
+    /// Costs of a case.
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of_case(case: &Case) -> Self {
@@ -67,7 +67,7 @@ impl Costs {
         }
     }
 
-    /// Of a rank that owns so many particles, with so many of others; stress points count as such.
+    /// Memory (bytes) of a rank with `owned` particles and `halo` of others; stress points count as particles.
     #[must_use]
     pub fn of(self, owned: f64, halo: f64) -> f64 {
         self.process + owned * self.owned + halo * self.halo

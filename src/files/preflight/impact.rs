@@ -1,28 +1,29 @@
-//! Whether an impact is within what the equations of state of its materials stand for, and whether they
-//! may break as it would have them.
+//! Checks that an impact is within the range of its materials' equations of state, and that they can fail
+//! where it would tear them.
 
 use super::approach::Approach;
 use material::{Eos, Material, Strength};
 use model::readable::shown;
 use model::{Body, Case};
 
-/// A linear equation of state misses the stiffening of compressed matter, by a tenth of the
+/// A linear equation of state misses the stiffening of compressed material, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
 const LINEAR: f64 = 0.1;
-/// Tait's law is right to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section
+/// Tait's law is valid to some 2.5 `GPa` for water (Cole 1948, *Underwater Explosions*, section
 /// 2.3), which a shock of `u/c = 0.6` reaches.
 const TAIT: f64 = 0.6;
-/// Matter shocked to `u = c₀` has gained `c₀²/2`, about what binds a metal (aluminium: 14 of
-/// 12 MJ/kg), and a Mie–Grüneisen solid cannot boil.
+/// Material shocked to `u = c₀` has gained `c₀²/2`, about the binding energy of a metal (aluminium: 14
+/// of 12 MJ/kg), and a Mie–Grüneisen solid cannot boil.
 const MIE_GRUNEISEN: f64 = 1.0;
 
-/// Shocks (Pa) from which a material that cannot fail is told of: twice what the strongest metals bear in
+/// Shocks (Pa) above which a material should be able to fail: twice the strength of the strongest metals in
 /// plane impacts, .3 to 5 `GPa` (Meyers 1994, *Dynamic Behavior of Materials*, chapter 16).
 const BORNE: f64 = 10e9;
 
-/// Impacts beyond the range of an equation of state, and those whose release would tear what cannot fail.
-pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
-    let mut told = vec![false; case.materials.len()];
+/// Impacts beyond the range of an equation of state, and those whose release would tear a material that
+/// cannot fail.
+pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
+    let mut warned = vec![false; case.materials.len()];
     let mut torn = vec![false; case.materials.len()];
     let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
     for Shock {
@@ -41,9 +42,9 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
             shown(closing, "m/s")
         );
         let ratio = velocity / sound_speed(material);
-        if let Some(what) = beyond(&material.eos, ratio).filter(|_| !told[index]) {
-            told[index] = true;
-            found.push(format!(
+        if let Some(what) = beyond(&material.eos, ratio).filter(|_| !warned[index]) {
+            warned[index] = true;
+            messages.push(format!(
                 "{meeting}, which drives `{}` to {ratio:.2} of its sound speed: {what}",
                 material.name
             ));
@@ -51,7 +52,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
         let pressure = impedance(material) * velocity;
         if case.dimension > 1 && holds_together(material) && pressure > BORNE && !torn[index] {
             torn[index] = true;
-            found.push(format!(
+            messages.push(format!(
                 "{meeting}, and `{}` cannot fail: what the release of a shock of {:.0} GPa would \
                  tear hangs together under as much tension; give it `failure`, as \
                  `failure.spall.pressure`",
@@ -62,9 +63,9 @@ pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
     }
 }
 
-/// What a meeting does to one of the two bodies.
+/// The shock in one of two bodies that meet.
 struct Shock<'a> {
-    /// It and the other.
+    /// This body and the other.
     pair: [&'a Body; 2],
     /// Speed at which they meet (m/s).
     closing: f64,
@@ -72,7 +73,7 @@ struct Shock<'a> {
     velocity: f64,
 }
 
-/// What a meeting does to those of two bodies that deform.
+/// The shocks in those of two bodies that deform.
 fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<'a>> {
     let [a, b] = meeting.bodies.map(|body| &case.bodies[body]);
     let closing = meeting.speed;
@@ -93,13 +94,13 @@ fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<
     })
 }
 
-/// Whether this is a solid that bears any tension.
+/// Returns true for a solid that bears any tension.
 fn holds_together(material: &Material) -> bool {
     material.failure.is_none()
         && !matches!(material.strength, Strength::None | Strength::Viscous(_))
 }
 
-/// What is wrong at a ratio of particle velocity to sound speed, if anything is.
+/// A warning if a ratio of particle velocity to sound speed is beyond an equation of state.
 fn beyond(eos: &Eos, ratio: f64) -> Option<&'static str> {
     match eos {
         Eos::Linear(_) if ratio > LINEAR => Some(

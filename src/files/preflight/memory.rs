@@ -1,4 +1,4 @@
-//! How much memory a run takes, and how much there is.
+//! Memory of a run, and free memory.
 
 use std::path::Path;
 
@@ -8,14 +8,14 @@ use engine::domain::{Fullest, Histogram, Outset, reach};
 use model::{Case, SphForm};
 use populate;
 
-/// Bytes that the largest of so many ranks takes at its peak. The processes of `comm`, which need
-/// not be those ranks, share the work. Collective; the same on all of them.
+/// Peak memory (bytes) of the largest of `ranks` ranks. The processes of `comm`, which need not be those
+/// ranks, share the work. Collective; the same on all of them.
 pub fn of_rank(case: &Case, comm: &Comm, ranks: usize) -> f64 {
     let fullest = fullest_of(case, comm, ranks);
     Costs::of_case(case).of(fullest.owned, fullest.halo)
 }
 
-/// The most that one of so many ranks has at the start, stress points among it. Collective.
+/// The most particles of one of `ranks` ranks at the start, stress points included. Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub fn fullest_of(case: &Case, comm: &Comm, ranks: usize) -> Fullest {
     // As many stress points for each particle as there are axes, less some at surfaces.
@@ -39,8 +39,8 @@ pub fn fullest_of(case: &Case, comm: &Comm, ranks: usize) -> Fullest {
     }
 }
 
-/// Of so many ranks at the start, from one count of all particles along each axis. `None` for a case
-/// without particles. Collective.
+/// The most particles of one of `ranks` ranks at the start, from one count of all particles along each
+/// axis. `None` for a case without particles. Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     let outset = Outset::new(case)?;
@@ -58,7 +58,8 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
     })
 }
 
-/// Of so many ranks in slabs of one level, from one count along their axis. Collective.
+/// The most particles of one of `ranks` ranks in slabs of one level, from one count along their axis.
+/// Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Fullest {
     let mut histogram = Histogram::default();
@@ -87,8 +88,7 @@ fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Full
     }
 }
 
-/// Why the ranks have not the memory that they will take, if they have not. Collective; the same on
-/// all ranks.
+/// A message if the ranks will take more memory than there is. Collective; the same on all ranks.
 #[allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,
@@ -102,9 +102,9 @@ pub fn shortage(comm: &Comm, case: &Case) -> Option<String> {
     let wanted = of_rank(case, comm, comm.size());
     let [share] = share;
     (wanted > share as f64).then(|| {
-        let (wanted, there) = (in_words(wanted), in_words(share as f64));
+        let (wanted, available) = (in_words(wanted), in_words(share as f64));
         format!(
-            "a rank takes about {wanted}, and {there} of memory are free for each rank of a \
+            "a rank takes about {wanted}, and {available} of memory are free for each rank of a \
              machine; take more machines or a coarser spacing, or --ignore-memory to start all \
              the same"
         )
@@ -133,8 +133,8 @@ fn local_ranks(ranks: usize) -> usize {
     found.unwrap_or(ranks).max(1)
 }
 
-/// Bytes that this process may still take: what the machine has to give, or its control group if
-/// that is less. `root` is where `/proc` and `/sys` are.
+/// Bytes that this process may still take: those free on the machine, or in its control group if that is
+/// less. `root` holds `/proc` and `/sys`.
 fn free(root: &Path) -> Option<u64> {
     let limits = [machine(root), group(root)];
     limits.into_iter().flatten().min()
@@ -149,13 +149,13 @@ fn machine(root: &Path) -> Option<u64> {
     Some(kilobytes * 1024)
 }
 
-/// What is left in the tightest control group above this process, of either version.
+/// Bytes left in the tightest control group above this process, of either version.
 fn group(root: &Path) -> Option<u64> {
     let text = std::fs::read_to_string(root.join("proc/self/cgroup")).ok()?;
     let mut least = None;
     for line in text.lines() {
-        let mut parts = line.splitn(3, ':').skip(1);
-        let (controllers, path) = (parts.next()?, parts.next()?);
+        let mut fields = line.splitn(3, ':').skip(1);
+        let (controllers, path) = (fields.next()?, fields.next()?);
         let (mount, names) = match controllers {
             "" => (
                 "sys/fs/cgroup",
@@ -182,7 +182,7 @@ fn group(root: &Path) -> Option<u64> {
     least
 }
 
-/// What is left in one control group; files that it holds in memory make room.
+/// Bytes left in one control group; cached files count as free.
 fn left(folder: &Path, [limit, used, files]: [&str; 3]) -> Option<u64> {
     let read = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
@@ -208,13 +208,13 @@ mod tests {
         input::load(&path, &[format!("spacing={spacing}")]).unwrap()
     }
 
-    /// Rows are looked at once, for any number of ranks, and they are many fewer than particles.
+    /// Rows are visited once, for any number of ranks, and they are many fewer than particles.
     #[test]
     fn what_is_foretold_costs_the_same_for_any_ranks() {
         let solo = Comm::solo();
         let case = quarter("0.005mm");
         let visits_of = |ranks| visits::of(|| of_rank(&case, &solo, ranks));
-        // With one level rows are looked at along its axis alone.
+        // With one level rows are visited along its axis alone.
         assert!(visits_of(2) < visits_of(8));
         let few = visits_of(8);
         assert_eq!(few, visits_of(10_000));
@@ -224,8 +224,8 @@ mod tests {
             visits::of(|| {
                 let case = quarter(spacing);
                 let approaches = approaches(&case);
-                let told = (warnings(&case, &approaches), approaches);
-                (told, of_rank(&case, &solo, 10_000))
+                let predicted = (warnings(&case, &approaches), approaches);
+                (predicted, of_rank(&case, &solo, 10_000))
             })
         };
         let visits = ["0.01mm", "0.005mm", "0.0025mm"].map(all_of);
@@ -265,28 +265,28 @@ mod tests {
         assert_eq!(fullest.owned, uneven(&case, 4) * even);
     }
 
-    /// Slabs of slabs hold what is forecast, but for bodies that are no boxes, and so do their halos.
+    /// Slabs of slabs and their halos hold as many particles as forecast, but for bodies that are no boxes.
     #[test]
     #[allow(clippy::cast_precision_loss, reason = "counts of thousands")]
     fn the_forecast_is_that_of_a_count() {
         let case = quarter("0.02mm");
         let sites = |body| populate::sites(body, 3, &case.symmetry, None);
         let sites = case.bodies.iter().flat_map(sites);
-        let places: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
-        let reaches = vec![0.5 * reach(&case); places.len()];
+        let positions: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
+        let reaches = vec![0.5 * reach(&case); positions.len()];
         let solo = Comm::solo();
         let outset = Outset::new(&case).unwrap();
         let forecast = outset.forecast(&case, &solo);
-        assert_eq!(forecast.total(), places.len() as f64);
+        assert_eq!(forecast.total(), positions.len() as f64);
         for (ranks, levels) in [(8, 1), (8, 2), (8, 3), (30, 2), (60, 3)] {
             let slabs = outset.slabs(&case, &solo, (ranks, Some(levels)), &mut Balance::default());
-            let tallies = tally(&slabs, &Mirrors::default(), (&places, &reaches), |_| {});
+            let tallies = tally(&slabs, &Mirrors::default(), (&positions, &reaches), |_| {});
             let most = |of: fn(&Tally) -> u64| tallies.iter().map(of).max().unwrap() as f64;
             let (owned, halo) = (most(|tally| tally.owned), most(|tally| tally.halo));
-            let told = forecast.fullest(levels, ranks);
-            println!("{ranks} ranks, {levels} levels: {told:?}, in truth {owned} and {halo}");
-            for (told, truth) in [(told.halo, halo), (told.owned, owned)] {
-                assert!((told / truth - 1.0).abs() < 0.25, "{ranks} {levels}");
+            let predicted = forecast.fullest(levels, ranks);
+            println!("{ranks} ranks, {levels} levels: {predicted:?}, in truth {owned} and {halo}");
+            for (predicted, truth) in [(predicted.halo, halo), (predicted.owned, owned)] {
+                assert!((predicted / truth - 1.0).abs() < 0.25, "{ranks} {levels}");
             }
         }
         assert!(forecast.levels(10_000) > 1);

@@ -1,4 +1,4 @@
-//! Values that are allowed and that no run has a use for.
+//! Values that are allowed but make no sense in a run.
 
 use super::approach::Approach;
 use super::steps::expected_step;
@@ -9,7 +9,7 @@ use populate;
 
 /// Dry rubber has about 1, clean metals in vacuum some 2 before they weld.
 const MOST_FRICTION: f64 = 2.0;
-/// Viscosity is 1 or 2 in most of what is published, and shortens the step in proportion.
+/// Viscosity is 1 or 2 in most publications, and shortens the step in proportion.
 const MOST_VISCOSITY: f64 = 10.0;
 /// With this `alpha` and `courant` and more viscosity waves of any length die down in the corrected form;
 /// whatever the viscosity they do, or grow too slowly to matter, with the shorter step.
@@ -21,41 +21,41 @@ const SHORT_STEP: f64 = 0.25;
 const MOST_RATIO: f64 = 3.0;
 /// More steps than any run takes.
 const MOST_STEPS: f64 = 1e9;
-/// A box may miss a whole number of spacings by what rounding does (spacings).
+/// A box may miss a whole number of spacings by rounding (spacings).
 const ROUNDING: f64 = 0.01;
 /// Bodies nearer to each other begin in touch (mean spacings).
 const TOUCH: f64 = 0.1;
 
 /// One line for each.
-pub fn warnings(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
-    unused_materials(case, found);
-    unbearing_materials(case, found);
+pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
+    unused_materials(case, messages);
+    unbearing_materials(case, messages);
     for body in &case.bodies {
-        found.extend(box_size(body, case));
+        messages.extend(box_size(body, case));
     }
-    pairs(case, approaches, found);
-    coefficients(case, found);
-    weight_on_zones(case, found);
-    viscosity_for_step(case, found);
-    times(case, found);
-    let told = case.fragments.as_ref();
-    found.extend(told.and_then(|options| options.doubt(case.dimension)));
+    pairs(case, approaches, messages);
+    coefficients(case, messages);
+    weight_on_zones(case, messages);
+    viscosity_for_step(case, messages);
+    times(case, messages);
+    let fragments = case.fragments.as_ref();
+    messages.extend(fragments.and_then(|options| options.doubt(case.dimension)));
 }
 
-fn unused_materials(case: &Case, found: &mut Vec<String>) {
+fn unused_materials(case: &Case, messages: &mut Vec<String>) {
     for (index, material) in case.materials.iter().enumerate() {
         if !case.bodies.iter().any(|body| body.material == index) {
-            found.push(format!("no body is of the material `{}`", material.name));
+            messages.push(format!("no body is of the material `{}`", material.name));
         }
     }
 }
 
 /// Materials that noise destroys.
-fn unbearing_materials(case: &Case, found: &mut Vec<String>) {
+fn unbearing_materials(case: &Case, messages: &mut Vec<String>) {
     for material in &case.materials {
         let spall = material.failure.spall;
         if spall.is_some_and(|s| s.pressure == 0.0 && s.after == AfterSpall::Failed) {
-            found.push(format!(
+            messages.push(format!(
                 "`{}` bears no tension and fails for good at the first of it: give `failure.spall.pressure` \
                  what it bears, or `failure.spall.after` as \"recompacts\" or \"hold\"",
                 material.name
@@ -64,7 +64,7 @@ fn unbearing_materials(case: &Case, found: &mut Vec<String>) {
     }
 }
 
-/// The size that the particles of a box give it, where that is another one.
+/// A warning if the particles of a box give it another size.
 fn box_size(body: &Body, case: &Case) -> Option<String> {
     let Shape::Box { lower, upper } = &body.shape else {
         return None;
@@ -76,39 +76,39 @@ fn box_size(body: &Body, case: &Case) -> Option<String> {
     }
     let (first, last) = populate::bounds(body, case.dimension)?;
     let axes = 0..case.dimension;
-    let asked: Vec<f64> = axes.clone().map(|a| upper[a] - lower[a]).collect();
+    let wanted: Vec<f64> = axes.clone().map(|a| upper[a] - lower[a]).collect();
     let got: Vec<f64> = axes.map(|a| last[a] - first[a] + lattice.spacing).collect();
     let differs = |(a, b): (&f64, &f64)| (a - b).abs() > ROUNDING * lattice.spacing;
     let unit = &case.length_unit;
-    asked.iter().zip(&got).any(differs).then(|| {
+    wanted.iter().zip(&got).any(differs).then(|| {
         format!(
             "the box of `{}` is no whole number of spacings of {}: in place of {} it gets {}; \
              `lattice = {{ kind = \"cubic\", fit = true }}` stretches the lattice to fill it",
             body.name,
             unit.text(lattice.spacing),
-            unit.vector(&asked),
+            unit.vector(&wanted),
             unit.vector(&got)
         )
     })
 }
 
 /// Absorbing zones that would have to bear a body's weight.
-fn weight_on_zones(case: &Case, found: &mut Vec<String>) {
+fn weight_on_zones(case: &Case, messages: &mut Vec<String>) {
     for absorber in case
         .loads
         .absorbers
         .iter()
         .filter(|_| case.loads.has_gravity())
     {
-        found.push(format!(
+        messages.push(format!(
             "under gravity `{}` sinks through its absorbing zone, which bears no weight",
             case.bodies[absorber.body].name
         ));
     }
 }
 
-/// Bodies in contact of very different spacings, and bodies that leave what they touch.
-fn pairs(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
+/// Bodies in contact with very different spacings, and bodies that separate from touching ones.
+fn pairs(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
     for (a, body) in case.bodies.iter().enumerate() {
         for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
             let rigid = body.rigid.is_some() && other.rigid.is_some();
@@ -118,12 +118,12 @@ fn pairs(case: &Case, approaches: &[Approach], found: &mut Vec<String>) {
                 continue;
             }
             let approach = approaches.iter().find(|pair| pair.bodies == [a, b]);
-            // Bodies of which nothing is known may meet.
+            // Bodies without a known approach may meet.
             if approach.is_none_or(|pair| pair.time < case.run.end_time) {
-                found.extend(ratio(body, other));
+                messages.extend(ratio(body, other));
             }
             if approach.is_some_and(|pair| pair.gap < TOUCH) {
-                found.extend(leaving(body, other, case.dimension));
+                messages.extend(leaving(body, other, case.dimension));
             }
         }
     }
@@ -176,8 +176,8 @@ fn leaving(body: &Body, other: &Body, dimension: usize) -> Option<String> {
     })
 }
 
-/// Friction and viscosity beyond what is known.
-fn coefficients(case: &Case, found: &mut Vec<String>) {
+/// Friction and viscosity beyond known values.
+fn coefficients(case: &Case, messages: &mut Vec<String>) {
     let of_mode = |mode: &ContactMode| mode.resistance().copied();
     let pairs = case.contacts.iter().map(|pair| &pair.mode);
     let modes = std::iter::once(&case.default_contact).chain(pairs);
@@ -186,7 +186,7 @@ fn coefficients(case: &Case, found: &mut Vec<String>) {
     let largest = |r: Resistance| r.static_friction.max(r.kinetic_friction);
     let friction = all.map(largest).fold(0.0, f64::max);
     if friction > MOST_FRICTION {
-        found.push(format!(
+        messages.push(format!(
             "`friction` is {}: dry rubber has about 1, and clean metals in vacuum weld beyond \
              {MOST_FRICTION}",
             short(friction)
@@ -194,7 +194,7 @@ fn coefficients(case: &Case, found: &mut Vec<String>) {
     }
     for (key, value) in [("alpha", case.sph.alpha), ("beta", case.sph.beta)] {
         if value > MOST_VISCOSITY {
-            found.push(format!(
+            messages.push(format!(
                 "`{key}` is {}: with more than {MOST_VISCOSITY} artificial viscosity outweighs the \
                  pressure, and steps are as many times shorter",
                 short(value)
@@ -206,14 +206,14 @@ fn coefficients(case: &Case, found: &mut Vec<String>) {
 /// Steps in which short waves grow by more than the viscosity takes from them: by (ω Δt)⁴/8 a step, and the
 /// viscosity takes α ω Δt times a constant, so that Δt goes with the cube root of α (theory page "Time
 /// integration").
-fn viscosity_for_step(case: &Case, found: &mut Vec<String>) {
+fn viscosity_for_step(case: &Case, messages: &mut Vec<String>) {
     let share = (case.sph.alpha / ENOUGH_VISCOSITY).cbrt();
-    // Rounded down, so that what is told is not told of again.
+    // Rounded down, so that the advised value gives no warning.
     let longest = (100.0 * (LONG_STEP * share).max(SHORT_STEP)).floor() / 100.0;
     let deforms = case.bodies.iter().any(|body| body.rigid.is_none());
     let corrected = case.sph.form == SphForm::Corrected;
     if deforms && corrected && share < 1.0 && case.time_step.courant > longest {
-        found.push(format!(
+        messages.push(format!(
             "`alpha` is {}: so little viscosity leaves short waves to grow, and energy with them, in steps \
              of `courant` = {}; take {longest:.2}",
             short(case.sph.alpha),
@@ -223,7 +223,7 @@ fn viscosity_for_step(case: &Case, found: &mut Vec<String>) {
 }
 
 /// More steps than any run takes, and output at each of them.
-fn times(case: &Case, found: &mut Vec<String>) {
+fn times(case: &Case, messages: &mut Vec<String>) {
     let Some(step) = expected_step(case) else {
         return;
     };
@@ -231,7 +231,7 @@ fn times(case: &Case, found: &mut Vec<String>) {
     let steps = end / step;
     let bounded = case.run.max_steps.is_some();
     if steps > MOST_STEPS && !bounded {
-        found.push(format!(
+        messages.push(format!(
             "`end_time` is {}, {} steps of about {}: no run takes so many; check its unit",
             shown(end, "s"),
             short(steps),
@@ -240,13 +240,13 @@ fn times(case: &Case, found: &mut Vec<String>) {
     }
     let own = case.output.snapshots.iter();
     let own = own.map(|schedule| (format!("every` of `{}", schedule.name), schedule.every));
-    let usual = [
+    let defaults = [
         ("snapshot_every".to_owned(), case.output.snapshot_every),
         ("checkpoint_every".to_owned(), case.output.checkpoint_every),
     ];
-    for (key, every) in usual.into_iter().chain(own) {
+    for (key, every) in defaults.into_iter().chain(own) {
         if let Some(every) = every.filter(|every| *every < step) {
-            found.push(format!(
+            messages.push(format!(
                 "`{key}` is {}, less than a step of about {}: every step writes one",
                 shown(every, "s"),
                 shown(step, "s")

@@ -1,16 +1,16 @@
-//! How long steps will be.
+//! Prediction of time steps.
 
 use super::approach::Approach;
 use exact::hugoniot::{Medium, Shock, impact};
 use model::{Body, Case, Vec3};
 use populate;
 
-/// How fast neighbours approach each other over the speed of an impact, while its first shocks run and over the whole of a
-/// run: with these the steps of `crater`, `hiermaier-1997`, `nakamura-1991` and `ogive-on-weldox` are foreseen within 5 %, and
-/// 16 % too few of the quarter impact, which ends with its shocks.
+/// Approach speed of neighbours over the speed of an impact, while its first shocks run and over the whole of a run: with
+/// these the steps of `crater`, `hiermaier-1997`, `nakamura-1991` and `ogive-on-weldox` are predicted within 5 %, and 16 % too
+/// few of the quarter impact, which ends with its shocks.
 const APPROACH: [f64; 2] = [0.75, 0.12];
 
-/// The step (s) that the sound criterion asks for, with the sound speed of the undeformed materials
+/// The step (s) by the sound criterion, with the sound speed of the undeformed materials
 /// and the approach speed of the impact; shocks take shorter ones, rarefaction longer ones.
 #[must_use]
 pub fn expected_step(case: &Case) -> Option<f64> {
@@ -28,13 +28,13 @@ pub fn expected_step(case: &Case) -> Option<f64> {
     (dt.is_finite() && dt > 0.0).then_some(dt)
 }
 
-/// Speed (m/s) of the signals that limit a step, by that of sound and of the approach of neighbours (m/s).
+/// Speed (m/s) of the signals that limit a step, from that of sound and of the approach of neighbours (m/s).
 fn signal(case: &Case, sound: f64, approach: f64) -> f64 {
     sound + 0.6 * (case.sph.alpha * sound + case.sph.beta * approach)
 }
 
-/// Steps from a time (s) to the end, as far as they are foreseen: those of [`expected_step`], and shorter ones while
-/// the first shocks go through bodies that meet so.
+/// Predicted number of steps from a time (s) to the end: those of [`expected_step`], and shorter ones while the first
+/// shocks go through bodies with these approaches.
 #[must_use]
 pub fn expected_steps(case: &Case, approaches: &[Approach], from: f64) -> Option<f64> {
     let long = expected_step(case)?;
@@ -52,8 +52,8 @@ pub fn expected_steps(case: &Case, approaches: &[Approach], from: f64) -> Option
     Some(all + shocked / short - shocked / long)
 }
 
-/// From when until when (s) shocks are as strong as at first, and the speed (m/s) of their signals: the strongest of all pairs of
-/// bodies that meet. A shock and the release from the nearest free face cross the smaller body.
+/// Beginning and end (s) of undiminished shocks, and the speed (m/s) of their signals: the strongest of all pairs of bodies
+/// that meet. A shock and the release from the nearest free face cross the smaller body.
 fn shock(case: &Case, approaches: &[Approach]) -> Option<([f64; 2], f64)> {
     let mut strongest: Option<([f64; 2], f64)> = None;
     for pair in approaches {
@@ -129,11 +129,14 @@ mod tests {
         ]
     }
 
-    /// What runs of these cases have taken.
+    /// Steps that runs of these cases have taken.
     #[test]
     fn steps_are_foreseen_as_they_are_taken() {
-        let near = |[told, _]: [f64; 2], ran: f64, within: f64| {
-            assert!((told / ran - 1.0).abs() < within, "{told} of {ran}");
+        let near = |[predicted, _]: [f64; 2], ran: f64, within: f64| {
+            assert!(
+                (predicted / ran - 1.0).abs() < within,
+                "{predicted} of {ran}"
+            );
         };
         near(steps("quarter-impact", &[]), 189.0, 0.2);
         near(steps("nakamura-1991", &["spacing=2mm"]), 351.0, 0.05);
@@ -163,7 +166,7 @@ mod tests {
 
     #[test]
     fn first_shocks_take_short_steps() {
-        let [told, plain] = steps("quarter-impact", &[]);
-        assert!(told > 1.1 * plain, "{told} {plain}");
+        let [predicted, plain] = steps("quarter-impact", &[]);
+        assert!(predicted > 1.1 * plain, "{predicted} {plain}");
     }
 }

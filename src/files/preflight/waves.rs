@@ -1,4 +1,4 @@
-//! What of the matter waves have reached by a time: the rest costs next to nothing, see the theory page "Smoothed
+//! Particles that waves have reached by a time. Particles at rest cost next to nothing, see the theory page "Smoothed
 //! particle hydrodynamics".
 
 use super::approach::{Approach, Ends, flies_straight};
@@ -6,45 +6,45 @@ use material::Rest;
 use model::{Body, Case, Heat, SphForm, Vec3};
 use populate;
 
-/// How far sums pass on what is not negligible ahead of sound, in spacings, as measured in the quarter impact.
+/// Distance of not negligible values ahead of sound, in spacings, measured in the quarter impact.
 const AHEAD: f64 = 16.0;
 
-/// How far beyond that, in spacings, matter rests that does not sleep, as measured on targets.
+/// Distance beyond that, in spacings, of particles at rest that are not inactive, measured on targets.
 const AWAKE: f64 = 34.0;
 
 /// Work of a particle at rest over that of another.
 pub const RESTING: f64 = 0.21;
 
-/// The same of one that sleeps.
+/// Work of an inactive particle over that of a moving one.
 const SLEEPING: f64 = 0.01;
 
-/// Times of a run at which its matter is looked at.
+/// Times of a run at which its particles are examined.
 pub const TIMES: usize = 8;
 
-/// Places that are looked at of a body.
-const PLACES: u64 = 20_000;
+/// Positions examined in a body.
+const SAMPLES: u64 = 20_000;
 
-/// What of the matter of a case waits for a wave.
+/// Prediction of the particles of a case that wait for a wave.
 #[derive(Debug, Clone)]
 pub struct Waves {
-    /// By body, what waits; `None` for matter that moves from the start.
+    /// By body, its rest; `None` if it moves from the start.
     still: Vec<Option<Still>>,
-    /// What strikes any of them.
+    /// Bodies that strike any of them.
     strikes: Vec<Strike>,
 }
 
-/// Matter at rest.
+/// A body at rest.
 #[derive(Debug, Clone, Copy)]
 struct Still {
-    /// Of sound (m/s).
+    /// Speed of sound (m/s).
     speed: f64,
-    /// How far the wave is ahead of sound (m).
+    /// Distance of the wave ahead of sound (m).
     ahead: f64,
-    /// How far from the wave matter is awake (m).
+    /// Distance from the wave up to which particles are active (m).
     awake: f64,
 }
 
-/// At which of the times of a run a particle waits, a bit for each.
+/// The times of a run at which a particle waits, a bit for each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Waiting {
     rests: u8,
@@ -52,7 +52,7 @@ pub struct Waiting {
 }
 
 impl Waiting {
-    /// Work at one of the times, over that of what moves.
+    /// Work at one of the times over that of a moving particle.
     #[must_use]
     pub fn work(self, time: usize) -> f64 {
         let is_so = |bits: u8| bits >> time & 1 == 1;
@@ -64,23 +64,23 @@ impl Waiting {
     }
 }
 
-/// A body comes.
+/// A body that strikes others.
 #[derive(Debug, Clone, Copy)]
 struct Strike {
-    /// When it touches another (s).
+    /// Time at which it touches another (s).
     time: f64,
-    /// Where it is then.
+    /// Its bounds then.
     ends: Ends,
     /// Its velocity (m/s).
     velocity: [f64; 3],
 }
 
 impl Waves {
-    /// Of a case whose bodies meet so; `None` if nothing of it rests, or nobody knows how long.
+    /// Of a case with these approaches; `None` if nothing rests, or for an unknown time.
     #[must_use]
     pub fn new(case: &Case, approaches: &[Approach]) -> Option<Self> {
         let still = waiting(case)?;
-        // When a body meets others that turns or follows a table is not foreseen: at once is on the safe side.
+        // Bodies that turn or follow a table meet others at an unknown time: at once is on the safe side.
         let unforeseen = (0..case.bodies.len())
             .filter(|&body| still[body].is_none() && !flies_straight(case, body));
         let mut strikes: Vec<_> = unforeseen
@@ -97,24 +97,24 @@ impl Waves {
         Some(Self { still, strikes })
     }
 
-    /// How far waves are from matter of a body at a place (m) at a time (s), negative where they have been. They go from
-    /// any body to any other as they do within one.
-    fn distance(&self, still: &Still, place: &[f64; 3], time: f64) -> f64 {
+    /// Distance (m) of waves from a position (m) in a body at a time (s), negative where they have been. They go from any
+    /// body to any other as they do within one.
+    fn distance(&self, still: &Still, position: &[f64; 3], time: f64) -> f64 {
         let strikes = self.strikes.iter().filter(|strike| time >= strike.time);
         let left = strikes.map(|strike| {
             let since = time - strike.time;
-            strike.distance(place, since) - still.speed * since - still.ahead
+            strike.distance(position, since) - still.speed * since - still.ahead
         });
         left.fold(f64::INFINITY, f64::min)
     }
 
-    /// At which of some times (s) matter of a body at a place (m) waits.
+    /// The times (s) at which a particle of a body at a position (m) waits.
     #[must_use]
-    pub fn waiting(&self, body: usize, place: &[f64; 3], times: &[f64; TIMES]) -> Waiting {
+    pub fn waiting(&self, body: usize, position: &[f64; 3], times: &[f64; TIMES]) -> Waiting {
         let mut waiting = Waiting::default();
         if let Some(still) = self.still.get(body).and_then(Option::as_ref) {
             for (k, &time) in times.iter().enumerate() {
-                let distance = self.distance(still, place, time);
+                let distance = self.distance(still, position, time);
                 waiting.rests |= u8::from(distance > 0.0) << k;
                 waiting.sleeps |= u8::from(distance > still.awake) << k;
             }
@@ -122,14 +122,14 @@ impl Waves {
         waiting
     }
 
-    /// Times of a run (s) from one on, in the middle of even parts of it.
+    /// Times of a run (s) from one on, in the middle of even intervals.
     #[must_use]
     pub fn times(case: &Case, from: f64) -> [f64; TIMES] {
         let each = (case.run.end_time - from).max(0.0) / as_number(TIMES as u64);
         std::array::from_fn(|k| from + each * (as_number(k as u64) + 0.5))
     }
 
-    /// Work of a step from a time (s) on, over what it would be if nothing rested.
+    /// Work of a step from a time (s) on over that if nothing rested.
     #[must_use]
     pub fn share_of_work(&self, case: &Case, from: f64) -> f64 {
         let (mut work, mut all) = (0.0, 0.0);
@@ -137,18 +137,18 @@ impl Waves {
         for (b, body) in case.bodies.iter().enumerate() {
             let (dimension, planes) = (case.dimension, &case.symmetry);
             let count = as_number(populate::count(body, dimension, planes, None));
-            let (sites, _) = populate::sample(body, dimension, planes, PLACES);
-            let places: Vec<Waiting> = sites
+            let (sites, _) = populate::sample(body, dimension, planes, SAMPLES);
+            let waiting: Vec<Waiting> = sites
                 .map(|site| self.waiting(b, &site.position, &times))
                 .collect();
-            work += count * mean_work(&places);
+            work += count * mean_work(&waiting);
             all += count;
         }
         if all > 0.0 { work / all } else { 1.0 }
     }
 }
 
-/// Mean work of particles that wait at some of the times, over what it would be if all moved.
+/// Mean work of particles that wait at some of the times over that if all moved.
 #[must_use]
 pub fn mean_work(all: &[Waiting]) -> f64 {
     let count = |bits: fn(&Waiting) -> u8| -> u64 {
@@ -164,25 +164,25 @@ pub fn mean_work(all: &[Waiting]) -> f64 {
 }
 
 impl Strike {
-    /// How far a place (m) is from where the body has been (m), some time (s) after it has touched another.
-    fn distance(&self, place: &[f64; 3], since: f64) -> f64 {
+    /// Distance (m) of a position (m) from the path of the body, some time (s) after it has touched another.
+    fn distance(&self, position: &[f64; 3], since: f64) -> f64 {
         let (lower, upper) = self.ends;
         let apart = |a: usize| {
             let way = self.velocity[a] * since;
-            let beyond = place[a] - (upper[a] + way.max(0.0));
-            let before = lower[a] + way.min(0.0) - place[a];
+            let beyond = position[a] - (upper[a] + way.max(0.0));
+            let before = lower[a] + way.min(0.0) - position[a];
             beyond.max(before).max(0.0)
         };
         Vec3::from(std::array::from_fn(apart)).norm()
     }
 }
 
-/// Whether matter of a case rests at first, without a look at what strikes it.
+/// Returns true if particles of a case rest at first, whatever strikes them.
 pub(super) fn can_rest(case: &Case) -> bool {
     waiting(case).is_some()
 }
 
-/// By body, what waits; `None` if nothing does, or nobody knows how long.
+/// By body, its rest; `None` if nothing rests, or for an unknown time.
 fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
     let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
         && case.loads.gravity == [0.0; 3]
@@ -192,7 +192,7 @@ fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
     still.iter().any(Option::is_some).then_some(still)
 }
 
-/// What waits in a body, if it is at rest.
+/// The rest of a body, if it is at rest.
 fn still(case: &Case, body: &Body) -> Option<Still> {
     let rest = Rest::of(&case.materials[body.material])?;
     let is_still = body.rigid.is_none()
@@ -216,7 +216,7 @@ fn strike(case: &Case, body: usize, time: f64) -> Option<Strike> {
     let body = &case.bodies[body];
     let (lower, upper) = populate::bounds(body, case.dimension)?;
     let velocity: [f64; 3] = body.velocity.into();
-    let then = |place: [f64; 3]| std::array::from_fn(|a| place[a] + velocity[a] * time);
+    let then = |position: [f64; 3]| std::array::from_fn(|a| position[a] + velocity[a] * time);
     Some(Strike {
         time,
         ends: (then(lower), then(upper)),
@@ -253,8 +253,8 @@ mod tests {
         let waves = waves(&case).unwrap();
         let (plate, sphere) = (0, 1);
         let (near, far) = ([0.1e-3, 0.0, 0.05e-3], [1.4e-3, 0.0, 0.05e-3]);
-        let work = |body: usize, place: &[f64; 3], time: f64| {
-            waves.waiting(body, place, &[time; TIMES]).work(3)
+        let work = |body: usize, position: &[f64; 3], time: f64| {
+            waves.waiting(body, position, &[time; TIMES]).work(3)
         };
         let is = |work: f64, wanted: f64| (work - wanted).abs() < 1e-12;
         assert!(is(work(sphere, &[0.0, 0.0, 0.5e-3], 0.0), 1.0));

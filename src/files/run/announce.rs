@@ -1,4 +1,4 @@
-//! What a run says as it begins.
+//! Messages at the beginning of a run.
 
 use std::path::Path;
 
@@ -7,13 +7,14 @@ use crate::output::{Log, VERSION, commit};
 use comm::Comm;
 use engine::step::Simulation;
 
-/// Says what begins: how many particles on how many ranks, from what, and `warnings` about the case.
-/// Collective.
+/// Reports the start of a run: particles, ranks, the checkpoint `restarted` if any, the time of `set_up` (s),
+/// and `warnings` about the case. Collective.
 pub fn say_all(
     comm: &Comm,
     simulation: &Simulation,
     log: &mut Log,
-    (restarted, set_up): (Option<&Path>, f64),
+    restarted: Option<&Path>,
+    set_up: f64,
     warnings: &[String],
 ) {
     let mut counts = [simulation.particles.owned() as u64];
@@ -56,7 +57,7 @@ pub fn say_all(
     }
 }
 
-/// How space is shared out among ranks.
+/// The decomposition of space among ranks, in words.
 pub fn decomposition(comm: &Comm, simulation: &Simulation) -> String {
     let axes: Vec<&str> = (simulation.axes_of_slabs().iter())
         .map(|axis| axis.name())

@@ -1,4 +1,4 @@
-//! When and how a run tells its fragments.
+//! Output of a run's fragments.
 
 use super::tables::Tables;
 use crate::output::fragments::{self, FragmentTable};
@@ -8,15 +8,15 @@ use engine::step::Simulation;
 use engine::step::fragments::find_in;
 use model::FragmentOptions;
 
-/// Whether fragments are told after a step between two times (s), after which a snapshot may be due,
-/// too.
+/// Returns true if fragments are due after a step between two times (s), after which a snapshot may be
+/// due, too.
 pub fn is_due(options: &FragmentOptions, [before, now]: [f64; 2], snapshot_due: bool) -> bool {
     (options.every).map_or(snapshot_due, |every| {
         Schedule::new(Some(every)).is_due(before, now)
     })
 }
 
-/// Finds the fragments and gives the label of each particle of this rank; writes their tables where
+/// Finds the fragments and returns the label of each particle of this rank; writes their tables where
 /// these are given. Collective.
 ///
 /// # Errors

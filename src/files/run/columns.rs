@@ -5,8 +5,8 @@ use crate::output::{Column, Value, unit_of_model};
 use engine::measure::{BodyFigures, Crossing, GaugeRow};
 use engine::step::{LoadState, PairState, Passed, Removed, RunState};
 
-/// Columns with SI units; what a model of fewer dimensions has is by length or area. A name that
-/// ends with `*` is that of three columns.
+/// Columns with SI units, by length or area in a model of fewer dimensions. A name that ends with `*` is
+/// that of three columns.
 pub(super) fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     let mut all = Vec::new();
     for (name, unit) in list {
@@ -22,7 +22,7 @@ pub(super) fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     all
 }
 
-/// What stands in one row below a name: one value, or three.
+/// The cells of one row below a name: one, or three.
 trait Cells<'a> {
     /// Adds them to a row.
     fn add(self, row: &mut Vec<Value<'a>>);
@@ -40,14 +40,14 @@ impl Cells<'_> for u64 {
     }
 }
 
-/// A time that is none yet is not a number.
+/// A missing time is NaN.
 impl Cells<'_> for Option<f64> {
     fn add(self, row: &mut Vec<Value>) {
         row.push(Value::Real(self.unwrap_or(f64::NAN)));
     }
 }
 
-/// Nothing is an empty cell.
+/// A missing count is an empty cell.
 impl Cells<'_> for Option<u64> {
     fn add(self, row: &mut Vec<Value>) {
         row.push(self.map_or(Value::Word(""), Value::Count));
@@ -85,8 +85,9 @@ macro_rules! tables {
 }
 
 tables! {
-    /// A row of the history; in other forms than the conventional a count of uncorrected gradients
-    /// follows, where matter may fail what has, and where there is a box of interest what left it.
+    /// A row of the history. In other forms than the conventional the number of uncorrected gradients
+    /// follows, then the failed mass where a material may fail, and the departed mass and energy where
+    /// there is a box of interest.
     HISTORY, history(state: &'a RunState) {
         "step", "", state.step;
         "time", "s", state.time;
@@ -108,18 +109,18 @@ tables! {
         "angular_impulse_*", "N m s", state.angular_impulse;
     }
 
-    /// What of a row of the history is told where matter may fail.
+    /// Cells of the history where a material may fail.
     FAILURE, failure(state: &'a RunState) {
         "failed_mass", "kg", state.totals.failed_mass;
         "failure_energy", "J", state.totals.failure_energy;
     }
 
-    /// What of a row of the history is told where there are absorbing zones.
+    /// Cells of the history where there are absorbing zones.
     ABSORBED, absorbed(state: &'a RunState) {
         "yielded_mass_in_zones", "kg", state.totals.yielded_mass;
     }
 
-    /// What of a row of the history is told where there is a box of interest.
+    /// Cells of the history where there is a box of interest.
     DEPARTED, departed(state: &'a RunState) {
         "departed_mass", "kg", state.departed_mass();
         "departed_energy", "J", state.departed_energy();
@@ -153,7 +154,7 @@ tables! {
         "heat", "J", load.heat;
     }
 
-    /// A row of what was removed from a body.
+    /// A row of the particles removed from a body.
     REMOVED, removed(time: f64, body: &'a str, gone: &Removed) {
         "time", "s", time;
         "body", "", body;
@@ -165,7 +166,7 @@ tables! {
         "gravity_energy", "J", gone.gravity_energy;
     }
 
-    /// What is told besides of what left the box of interest.
+    /// Further cells of the particles that left the box of interest.
     DEPARTURE, departure(gone: &Removed) {
         "angular_momentum_*", "kg m^2/s", gone.angular_momentum;
         "first_time", "s", gone.times.map(|[first, _]| first);
@@ -186,7 +187,7 @@ tables! {
         "megabytes_sent", "MB", load.bytes as f64 * 1e-6;
     }
 
-    /// A row of ranks that follow each other.
+    /// A row of consecutive ranks.
     RANKS, rank_row(step: u64, group: &Group) {
         "step", "", step;
         "first_rank", "", group.ranks[0];
@@ -195,7 +196,7 @@ tables! {
         "work_over_mean", "", group.work;
     }
 
-    /// A row of what there is of a body.
+    /// A row of the sums over a body.
     BODIES, body_row(time: f64, name: &'a str, body: &BodyFigures) {
         "time", "s", time;
         "body", "", name;
@@ -221,7 +222,7 @@ tables! {
         "largest_plastic_strain", "", body.plastic_strain;
     }
 
-    /// What of a row of a gauge comes before its readings.
+    /// Cells of a gauge before its readings.
     GAUGES, gauge_row(state: &RunState, name: &'a str, gauge: &GaugeRow) {
         "step", "", state.step;
         "time", "s", state.time;
@@ -230,7 +231,7 @@ tables! {
         "coverage", "", gauge.coverage;
     }
 
-    /// A row of what has passed a witness plane in a direction.
+    /// A row of the particles that have passed a witness plane in a direction.
     WITNESS, witness_row(time: f64, names: [&'a str; 3], passed: &Passed) {
         "time", "s", time;
         "witness", "", names[0];

@@ -1,15 +1,15 @@
-//! Tells once of each body that it has begun to leave the box of interest.
+//! Notices that bodies have begun to leave the box of interest, once for each.
 
 use super::say::{counted, seconds};
 use engine::step::Simulation;
 use model::readable::shown;
 
-/// Bodies of which it has been told, in the order of the case.
+/// Bodies that have been reported, in the order of the case.
 #[derive(Debug, Default)]
 pub struct Departures(Vec<bool>);
 
 impl Departures {
-    /// Of a run that begins or goes on; what its state knows has been told.
+    /// Of a run that begins or continues; departures in its state have been reported.
     pub fn new(simulation: &Simulation) -> Self {
         let departed = &simulation.state.departed;
         Self(departed.iter().map(|gone| gone.particles > 0).collect())
@@ -20,11 +20,11 @@ impl Departures {
         let (case, state) = (&simulation.case, &simulation.state);
         let mut lines = Vec::new();
         let bodies = case.bodies.iter().zip(&state.departed);
-        for ((body, gone), told) in bodies.zip(&mut self.0) {
-            if gone.particles == 0 || *told {
+        for ((body, gone), reported) in bodies.zip(&mut self.0) {
+            if gone.particles == 0 || *reported {
                 continue;
             }
-            *told = true;
+            *reported = true;
             lines.push(format!(
                 "`{}` begins to leave the box of interest: {} of {}, at {}",
                 body.name,

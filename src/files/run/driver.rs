@@ -1,4 +1,4 @@
-//! The run loop: steps, and what is written between them.
+//! The run loop: steps, and output between them.
 
 mod checkpoints;
 mod measures;
@@ -33,13 +33,13 @@ use engine::step::failure::{check_gain, post_mortem as post_mortem_of, remove_fa
 use engine::step::{self, Simulation, StepError, Timers, measurements};
 use model::NumericalFailurePolicy;
 
-/// One rank's part of a run in its folder.
+/// A run in its folder, on one rank.
 pub struct Driver<'a> {
     simulation: Simulation,
     folder: &'a RunFolder,
     until: Option<f64>,
     start: Instant,
-    /// Seconds from the start of MPI to the first step, but for what is written before it.
+    /// Seconds from the start of MPI to the first step, without output.
     set_up: f64,
     watch: Watch,
     plans: Vec<Plan>,
@@ -55,10 +55,10 @@ pub struct Driver<'a> {
     post_mortems: usize,
 }
 
-/// Post-mortems that a process writes: where particles are removed, the first ones tell the most.
+/// Most post-mortems of a process: where particles are removed, the first ones are the most useful.
 const POST_MORTEMS: usize = 10;
 
-/// How a loop ended.
+/// The end of the loop.
 enum End {
     Finished,
     Until,
@@ -66,8 +66,8 @@ enum End {
 }
 
 impl<'a> Driver<'a> {
-    /// Opens the tables, says what begins (with `warnings` about the case), and writes the first
-    /// snapshot of a run that does not go on from a checkpoint. Collective.
+    /// Opens the tables, reports the start (with `warnings` about the case), and writes the first
+    /// snapshot of a run that does not continue from a checkpoint. Collective.
     ///
     /// # Errors
     /// The same on all ranks.
@@ -82,7 +82,7 @@ impl<'a> Driver<'a> {
         let comm = launch.comm;
         let set_up = launch.ready.elapsed().as_secs_f64();
         simulation.step_control.poison = args.poison;
-        // What set-up took is no part of a step.
+        // Time of set-up belongs to no step.
         simulation.timers = Timers::default();
         let plans = Plan::all(&simulation.case, &simulation.particles)?;
         let mut tables = None;
@@ -118,15 +118,16 @@ impl<'a> Driver<'a> {
             comm,
             &driver.simulation,
             &mut driver.log,
-            (restarted, set_up),
+            restarted,
+            set_up,
             warnings,
         );
         if restarted.is_none() {
             let begun = Instant::now();
             driver.write_row(comm, true)?;
             driver.write_measures(comm, 0.0)?;
-            let tells = driver.simulation.case.fragments.is_some();
-            driver.write_snapshots(comm, None, tells)?;
+            let census_due = driver.simulation.case.fragments.is_some();
+            driver.write_snapshots(comm, None, census_due)?;
             driver.output_time.add(begun);
         }
         Ok(driver)
@@ -191,8 +192,8 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// A post-mortem of a numerical failure, and then what the case says: the end, or particles taken out until
-    /// there is none.
+    /// Writes a post-mortem of a numerical failure, then follows the policy of the case: the end, or removal of
+    /// particles until there is no failure.
     fn handle_failure(&mut self, comm: &Comm, mut error: StepError) -> Result<(), String> {
         loop {
             let StepError::Failure { step, id, kind, .. } = error else {
@@ -242,7 +243,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// Whatever is due after a step that began at time `before` (s).
+    /// Writes all output due after a step that began at time `before` (s).
     fn write(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
         self.write_measures(comm, before)?;
         for text in self.departures.notices(&self.simulation) {
@@ -250,14 +251,14 @@ impl<'a> Driver<'a> {
         }
         if let Some(text) = self.notices.decomposition(comm, &self.simulation) {
             self.record(comm, &text);
-            self.progress.tell(&text);
+            self.progress.say(&text);
         }
         let finished = self.simulation.is_finished();
         let (now, step) = (self.simulation.state.time, self.simulation.state.step);
         let output = &self.simulation.case.output;
         let mut due = self.plans.iter().map(|plan| plan.is_due(before, now));
-        let usual_due = due.next().unwrap_or_default();
-        let snapshot_due = usual_due || due.any(|is| is);
+        let default_due = due.next().unwrap_or_default();
+        let snapshot_due = default_due || due.any(|due| due);
         let checkpoint_due = Schedule::new(output.checkpoint_every).is_due(before, now)
             || output
                 .checkpoint_every_steps
@@ -272,8 +273,9 @@ impl<'a> Driver<'a> {
             self.write_row(comm, of_bodies)?;
         }
         let options = self.simulation.case.fragments;
-        let census_due = options
-            .is_some_and(|options| finished || census::is_due(&options, [before, now], usual_due));
+        let census_due = options.is_some_and(|options| {
+            finished || census::is_due(&options, [before, now], default_due)
+        });
         if finished || snapshot_due {
             let step = (!finished).then_some([before, now]);
             self.write_snapshots(comm, step, census_due)?;
@@ -286,7 +288,7 @@ impl<'a> Driver<'a> {
             self.write_checkpoint(comm)?;
         }
         if snapshot_due || checkpoint_due {
-            on_root(comm, || self.tell_running())?;
+            on_root(comm, || self.write_running())?;
         }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.record(comm, &line);
@@ -295,7 +297,7 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Writes a row of each table, those of bodies if they are asked for.
+    /// Writes a row of each table, that of bodies if `of_bodies`.
     fn write_row(&mut self, comm: &Comm, of_bodies: bool) -> Result<(), OutputError> {
         self.write_crossings(comm)?;
         let load = load(comm, &self.simulation);
@@ -320,7 +322,7 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// The last checkpoint, `summary.json` and `status.json`; gives the exit code.
+    /// Writes the last checkpoint, `summary.json` and `status.json`; returns the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
@@ -360,7 +362,7 @@ impl<'a> Driver<'a> {
         code
     }
 
-    /// A line of the log, which is told to those alone who read JSON.
+    /// Writes a line of the log, which is printed in JSON output only.
     fn log(&mut self, comm: &Comm, text: &str) {
         self.record(comm, text);
         if comm.is_root() {
@@ -368,7 +370,7 @@ impl<'a> Driver<'a> {
         }
     }
 
-    /// A line of the log that the user hears of in another way.
+    /// Writes a line of the log only.
     fn record(&mut self, comm: &Comm, text: &str) {
         if comm.is_root() {
             self.log.line(text);

@@ -6,5 +6,5 @@ pub const EXIT_FAILED: u8 = 1;
 pub const EXIT_INPUT: u8 = 2;
 /// The run was asked to stop and has written a checkpoint.
 pub const EXIT_STOPPED: u8 = 75;
-/// A second Ctrl-C ended the process, as shells tell it.
+/// A second Ctrl-C ended the process, by the convention of shells.
 pub const EXIT_INTERRUPTED: i32 = 130;

@@ -1,7 +1,7 @@
-//! Faults on purpose, to test that one rank's trouble ends all ranks: only in builds with
+//! Injected faults, to test that the failure of one rank ends all ranks: only in builds with
 //! debug assertions, as those of tests are.
 //!
-//! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` lets that rank meet the trouble before that step. KIND is
+//! `WHIPPLE_TEST_FAULT=KIND:RANK:STEP` makes that rank fail before that step. KIND is
 //! `panic` (on the main thread), `task` (a panic on another thread, where there is one), `nan`
 //! (a particle's velocity is NaN), `pause` (all wait for this rank, to be stopped), `kill`
 //! (SIGKILL), `kill-in-checkpoint` (SIGKILL while the next checkpoint is written) or `full` (no
@@ -23,7 +23,7 @@ enum Kind {
     Full,
 }
 
-/// How long a pause takes: the file `stop` is looked for once a second.
+/// Length of a pause: the file `stop` is looked for once a second.
 const PAUSE: Duration = Duration::from_millis(1500);
 
 /// The fault of one rank.
@@ -33,11 +33,10 @@ struct Fault {
     step: u64,
 }
 
-/// Makes the trouble that the environment asks for, if it is of this rank and of the step that is
-/// next.
+/// Injects the fault that the environment requests, if it is of this rank and of the next step.
 pub fn strike(rank: usize, simulation: &mut Simulation, checkpoints: &Path) {
-    let asked = std::env::var("WHIPPLE_TEST_FAULT").ok();
-    let fault = asked.and_then(|text| parse(&text, rank));
+    let requested = std::env::var("WHIPPLE_TEST_FAULT").ok();
+    let fault = requested.and_then(|text| parse(&text, rank));
     if let Some(fault) = fault.filter(|fault| simulation.state.step + 1 == fault.step) {
         fault.strike(simulation, checkpoints);
     }
@@ -80,7 +79,7 @@ fn kill() {
     let _ = signal_hook::low_level::raise(signal_hook::consts::SIGKILL);
 }
 
-/// Whether a checkpoint is being written.
+/// Returns true while a checkpoint is being written.
 fn holds_partial(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names = entries.map(|entry| entry.path());
@@ -102,8 +101,8 @@ fn limit_files() {
 }
 
 fn parse(text: &str, rank: usize) -> Option<Fault> {
-    let mut parts = text.split(':');
-    let kind = match parts.next()? {
+    let mut fields = text.split(':');
+    let kind = match fields.next()? {
         "panic" => Kind::Panic,
         "task" => Kind::Task,
         "nan" => Kind::Nan,
@@ -113,8 +112,8 @@ fn parse(text: &str, rank: usize) -> Option<Fault> {
         "full" => Kind::Full,
         _ => return None,
     };
-    let here = parts.next()?.parse() == Ok(rank);
-    let step = parts.next()?.parse().ok()?;
+    let here = fields.next()?.parse() == Ok(rank);
+    let step = fields.next()?.parse().ok()?;
     here.then_some(Fault { kind, step })
 }
 

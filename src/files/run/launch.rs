@@ -16,22 +16,22 @@ const EXIT_PANIC: i32 = 101;
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
 
-/// What a command needs to know of its start.
+/// Start of a command on all ranks.
 pub struct Launch<'a> {
     /// The ranks.
     pub comm: &'a Comm,
-    /// When the program started.
+    /// Start of the program.
     pub start: Instant,
-    /// When MPI had started.
+    /// Time at which MPI had started.
     pub ready: Instant,
-    /// The same by the clock of files.
+    /// Start of the program by the clock of files.
     pub began: SystemTime,
     /// Signals that came since.
     pub signals: Signals,
 }
 
 impl Launch<'_> {
-    /// Starts the threads of this rank, once it is known that there is work for them.
+    /// Starts the threads of this rank.
     pub fn start_threads(&self, wanted: Option<u16>) {
         start_threads(self.comm, wanted.map(usize::from));
     }
@@ -55,7 +55,7 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
         signals,
     });
     if abandoned() {
-        // All ranks are here, and all has been said.
+        // All ranks are here, and all messages are printed.
         comm.barrier();
         abort_job(code.into());
     }
@@ -64,46 +64,46 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
     code
 }
 
-/// Whether this process was started by an MPI launcher.
+/// Returns true if this process was started by an MPI launcher.
 pub fn by_mpi() -> bool {
     let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
     launched.iter().any(|name| std::env::var_os(name).is_some())
 }
 
-/// Does something once for all processes of a job that need no MPI for their work.
-pub fn once(speak: impl FnOnce()) {
-    // mpirun may kill the job at the first exit, so nobody leaves before rank 0 has spoken.
+/// Runs `task` once for all processes of a job that need no MPI for their work.
+pub fn once(task: impl FnOnce()) {
+    // mpirun may kill the job at the first exit, so no rank leaves before rank 0 is done.
     if by_mpi()
         && let Some((_session, comm)) = Session::start()
     {
         if comm.is_root() {
-            speak();
+            task();
         }
         comm.barrier();
     } else {
-        speak();
+        task();
     }
 }
 
-/// Says what is wrong with the input, once for all ranks; gives the exit code.
+/// Prints an error of the input, once for all ranks; returns the exit code.
 pub fn warn(comm: &Comm, message: &str) -> u8 {
     if comm.is_root() {
         say::warn(message);
     }
-    // Nobody leaves before rank 0 has spoken: mpirun may kill the job at the first exit.
+    // mpirun may kill the job at the first exit.
     comm.barrier();
     EXIT_INPUT
 }
 
-/// Says why a run could not begin, once for all ranks; gives the exit code. Its folder is left as
+/// Prints why a run could not begin, once for all ranks; returns the exit code. Its folder is left as
 /// it was.
 pub fn give_up(comm: &Comm, message: &str) -> u8 {
     warn(comm, &format!("error: {message}"));
     EXIT_FAILED
 }
 
-/// Says once for all ranks why a run failed at a step and a time (s), and writes it into its
-/// folder; gives the exit code.
+/// Prints once for all ranks why a run failed at a step and a time (s), and writes it into its
+/// folder; returns the exit code.
 pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
         say::warn(&format!("error: {message}"));
@@ -123,8 +123,8 @@ pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64
     EXIT_FAILED
 }
 
-/// Stack of a thread (bytes): exact sums are large, and tasks that wait for each other lie on top of
-/// each other. What no thread touches takes no memory.
+/// Stack of a thread (bytes): exact sums are large, and waiting tasks are nested. Untouched pages take no
+/// memory.
 const STACK: usize = 16 << 20;
 
 fn start_threads(comm: &Comm, wanted: Option<usize>) {
@@ -142,7 +142,7 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
         .stack_size(STACK)
         .use_current_thread()
         .build_global();
-    // Without a pool of its own rayon uses all cores, which is right, if not what was asked.
+    // Without a pool of its own rayon uses all cores, which is correct, if not what was wanted.
     if let Err(cause) = pool {
         let rank = comm.rank();
         say::warn(&format!(
@@ -163,13 +163,13 @@ fn default_threads(comm: &Comm, cores: usize) -> usize {
         .max(1)
 }
 
-/// A panic anywhere prints one line and ends all ranks: else it would unwind into `MPI_Finalize`,
+/// Makes a panic anywhere print one line and end all ranks: else it would unwind into `MPI_Finalize`,
 /// which waits for the other ranks, and they for this one.
 pub fn abort_on_panic(rank: usize) {
-    let usual = std::panic::take_hook();
+    let default_hook = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let step = STEP.load(Ordering::Relaxed);
-        let place = info
+        let location = info
             .location()
             .map(|l| format!(" ({}:{})", l.file(), l.line()))
             .unwrap_or_default();
@@ -178,10 +178,10 @@ pub fn abort_on_panic(rank: usize) {
             .unwrap_or("unknown cause")
             .replace('\n', " ");
         say::warn(&format!(
-            "error: rank {rank}, step {step}: {what}{place}; this is a bug of the program"
+            "error: rank {rank}, step {step}: {what}{location}; this is a bug of the program"
         ));
         if std::env::var_os("RUST_BACKTRACE").is_some_and(|wanted| wanted != "0") {
-            usual(info);
+            default_hook(info);
         }
         abort_job(EXIT_PANIC);
     }));

@@ -1,4 +1,4 @@
-//! How the work of a run is spread over its ranks.
+//! Distribution of a run's work over its ranks.
 
 use rayon::prelude::*;
 
@@ -6,40 +6,40 @@ use comm::Comm;
 use engine::step::Simulation;
 use particles::GRAIN;
 
-/// How evenly the ranks are loaded, and what they have sent.
+/// Loads of the ranks, and their traffic.
 pub struct Load {
     ranks: usize,
-    /// Of all ranks, and of the one with the most.
+    /// Particles of all ranks, and of the one with the most.
     pub particles: [u64; 2],
-    /// The same of their load-balance weights.
+    /// Load-balance weights of all ranks, and of the one with the most.
     pub work: [u64; 2],
     /// Ranks without particles.
     pub empty_ranks: u64,
-    /// Sent so far.
+    /// Messages sent so far.
     pub messages: u64,
-    /// Sent so far.
+    /// Bytes sent so far.
     pub bytes: u64,
-    /// Of particles, since the start of the process.
+    /// Updates of particles since the start of the process.
     pub updates: u64,
-    /// Particles and work of each of some groups of ranks, of single ones if there are few.
+    /// Particles and work of each group of ranks, of single ones if there are few.
     groups: Vec<[u64; 2]>,
 }
 
-/// What some ranks that follow each other have.
+/// The load of consecutive ranks.
 pub(super) struct Group {
     /// The first and the last of them.
     pub ranks: [u64; 2],
-    /// Of all of them.
+    /// Particles of all of them.
     pub particles: u64,
-    /// Of a rank of them, over the mean of all ranks.
+    /// Mean work of a rank of them over the mean of all ranks.
     pub work: f64,
 }
 
-/// Groups of ranks whose work is told, at most.
+/// Most groups of ranks.
 const GROUPS: usize = 64;
 
 impl Load {
-    /// The most that a rank has over the mean.
+    /// The largest value of a rank over the mean.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     pub(super) fn imbalance(&self, [sum, most]: [u64; 2]) -> f64 {
         most as f64 * self.ranks as f64 / (sum as f64).max(1.0)
@@ -67,7 +67,7 @@ impl Load {
         })
     }
 
-    /// That of ranks that do as much work each.
+    /// Of ranks with equal work.
     #[cfg(test)]
     pub(super) fn of_equals(ranks: usize, work: u64) -> Self {
         let total = work * ranks as u64;

@@ -1,5 +1,5 @@
-//! A run in its folder, on all ranks: how it starts or goes on, the loop between its files, why it
-//! stops, and what it says.
+//! A run in its folder, on all ranks: its start or restart, the loop with its output, reasons to stop, and
+//! messages to the user.
 
 mod announce;
 mod census;
@@ -22,7 +22,7 @@ pub mod start;
 mod stop;
 mod summary;
 mod tables;
-pub mod voice;
+pub mod verbosity;
 mod watched;
 
 pub use options::CommonArgs;

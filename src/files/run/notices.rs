@@ -1,4 +1,4 @@
-//! Tells of what changes in a run, and once of what goes wrong in one that goes on.
+//! Notices of changes in a run, and warnings, each given once.
 
 use super::announce::decomposition;
 use comm::Comm;
@@ -9,22 +9,22 @@ use model::readable::short;
 /// Error of the angular momentum that is worth a warning.
 const WORTH: f64 = 0.01;
 
-/// What has been told.
+/// Notices given so far.
 #[derive(Debug, Default)]
 pub struct Notices {
     drift: bool,
     yielded: bool,
-    /// How often the slabs had changed.
+    /// Changes of the slabs so far.
     changes: u64,
 }
 
 impl Notices {
-    /// A warning, the first time that there is cause for it.
+    /// A warning, the first time that it is due.
     pub fn notice(&mut self, simulation: &Simulation) -> Option<String> {
         self.drift(simulation).or_else(|| self.yielded(simulation))
     }
 
-    /// How space is shared out from now on, each time that it changes.
+    /// The new decomposition, each time that it changes.
     pub fn decomposition(&mut self, comm: &Comm, simulation: &Simulation) -> Option<String> {
         let changes = simulation.changes_of_slabs();
         let has_changed = std::mem::replace(&mut self.changes, changes) != changes;
@@ -34,8 +34,8 @@ impl Notices {
         })
     }
 
-    /// Angular momentum is off by more than a hundredth that no plane, surface, load or gravity
-    /// explains.
+    /// A warning if angular momentum is off by more than a hundredth that no plane, surface, load or
+    /// gravity explains.
     fn drift(&mut self, simulation: &Simulation) -> Option<String> {
         let state = &simulation.state;
         let errors = state.worst.angular_momentum_error;
@@ -55,7 +55,7 @@ impl Notices {
         ))
     }
 
-    /// Matter in an absorbing zone, which is to be elastic, has yielded or failed.
+    /// A warning if material in an absorbing zone, which is to be elastic, has yielded or failed.
     fn yielded(&mut self, simulation: &Simulation) -> Option<String> {
         let state = &simulation.state;
         let mass = state.totals.yielded_mass - state.initial.yielded_mass;

@@ -1,9 +1,9 @@
-//! What the user says of a run beside its case.
+//! Options of a run beside its case.
 
 use std::time::Duration;
 
 use super::stop::{parse_until, parse_walltime};
-use super::voice::{LogForm, Voice};
+use super::verbosity::{LogFormat, Verbosity};
 use crate::preflight::memory;
 use comm::Comm;
 use model::Case;
@@ -29,7 +29,7 @@ pub struct CommonArgs {
 
     /// Form of what is printed: lines of text, or a JSON object a line, with the lines of log.txt
     #[arg(long, value_name = "FORM", value_enum, default_value_t)]
-    pub log: LogForm,
+    pub log: LogFormat,
 
     /// Threads of each rank [default: the cores shared out among the machine's ranks]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -49,15 +49,15 @@ pub struct CommonArgs {
 }
 
 impl CommonArgs {
-    /// How this process is to speak.
-    pub fn voice(&self) -> Voice {
-        Voice {
+    /// Verbosity of this process.
+    pub fn verbosity(&self) -> Verbosity {
+        Verbosity {
             quiet: self.quiet,
-            json: self.log == LogForm::Json,
+            json: self.log == LogFormat::Json,
         }
     }
 
-    /// Why there is not enough memory for a case, unless the user will not hear of it. Collective.
+    /// An error message if there is not enough memory for a case, unless that is ignored. Collective.
     pub fn shortage(&self, comm: &Comm, case: &Case) -> Option<String> {
         let shortage = (!self.ignore_memory).then(|| memory::shortage(comm, case));
         shortage.flatten().map(|why| format!("error: {why}"))

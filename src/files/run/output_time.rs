@@ -1,4 +1,4 @@
-//! What share of a run goes into its files.
+//! The share of output in the time of a run.
 
 use std::time::{Duration, Instant};
 
@@ -11,17 +11,17 @@ pub struct OutputTime {
     pub snapshots: Duration,
     /// In checkpoints.
     pub checkpoints: Duration,
-    /// In all of it.
+    /// In all output.
     all: Duration,
 }
 
 impl OutputTime {
-    /// Output that began at this time has ended.
+    /// Adds the time since the beginning of output.
     pub fn add(&mut self, begun: Instant) {
         self.all += begun.elapsed();
     }
 
-    /// Seconds by kind, the mean of all ranks. Collective.
+    /// Seconds by type of output, the mean of all ranks. Collective.
     #[must_use]
     #[allow(
         clippy::cast_precision_loss,
@@ -29,8 +29,8 @@ impl OutputTime {
         reason = "nanoseconds of a run fit well"
     )]
     pub fn seconds(&self, comm: &Comm) -> Seconds {
-        let parts = [self.snapshots, self.checkpoints, self.all];
-        let mut sums = parts.map(|time| time.as_nanos() as u64);
+        let times = [self.snapshots, self.checkpoints, self.all];
+        let mut sums = times.map(|time| time.as_nanos() as u64);
         comm.sum_u64(&mut sums);
         let [snapshots, checkpoints, all] = sums.map(|sum| sum as f64 * 1e-9 / comm.size() as f64);
         Seconds {
@@ -41,19 +41,19 @@ impl OutputTime {
     }
 }
 
-/// Seconds in output by kind.
+/// Seconds by type of output.
 #[derive(Debug, Clone, Copy)]
 pub struct Seconds {
     /// In snapshots.
     pub snapshots: f64,
     /// In checkpoints.
     pub checkpoints: f64,
-    /// In tables and what they measure.
+    /// In tables and their measurements.
     pub others: f64,
 }
 
 impl Seconds {
-    /// In all of it.
+    /// In all output.
     #[must_use]
     pub fn all(self) -> f64 {
         self.snapshots + self.checkpoints + self.others
@@ -61,7 +61,7 @@ impl Seconds {
 
     /// With their names.
     #[must_use]
-    pub fn by_kind(self) -> [(&'static str, f64); 3] {
+    pub fn by_name(self) -> [(&'static str, f64); 3] {
         [
             ("snapshots", self.snapshots),
             ("checkpoints", self.checkpoints),
@@ -69,7 +69,7 @@ impl Seconds {
         ]
     }
 
-    /// Part of a run of so many seconds.
+    /// Fraction of a run of `wall` seconds.
     #[must_use]
     pub fn share(self, wall: f64) -> f64 {
         self.all() / wall.max(f64::MIN_POSITIVE)

@@ -1,4 +1,4 @@
-//! How far a run is: a bar on a terminal, now and then a line elsewhere.
+//! Progress of a run: a bar on a terminal, a line every ten seconds elsewhere.
 
 use std::fs::File;
 use std::io::IsTerminal;
@@ -9,8 +9,8 @@ use console::Term;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Map, Value};
 
-use super::say::{say, seconds, tell, warn};
-use super::voice::Voice;
+use super::say::{report, say, seconds, warn};
+use super::verbosity::Verbosity;
 use crate::preflight::expected_step;
 use engine::step::RunState;
 use model::{Case, RunControl};
@@ -19,34 +19,34 @@ use model::{Case, RunControl};
 const LINE_EVERY: Duration = Duration::from_secs(10);
 /// Draws a second, at most.
 const DRAWS: u8 = 10;
-/// Part of a run after which its own steps tell of those to come.
-const SHOWN: f64 = 0.01;
+/// Fraction of a run before its own steps predict those to come.
+const START: f64 = 0.01;
 /// Length of the bar in its own units.
 const TICKS: u64 = 1000;
 
-/// Progress of a run, told by rank 0.
+/// Progress of a run, which rank 0 prints.
 pub struct Progress {
-    tells: bool,
+    prints: bool,
     bar: Option<ProgressBar>,
     control: RunControl,
-    /// A step (s) as it is foreseen.
+    /// Predicted time step (s).
     expected: Option<f64>,
-    /// The first state that was shown: when, and its step and time (s).
+    /// The first state: clock time, step and time (s).
     begun: Option<(Instant, u64, f64)>,
     last: Instant,
-    /// The time that was left when it was last asked for.
+    /// The time left at the last update.
     left: Option<Duration>,
 }
 
 impl Progress {
-    /// Of a case, for rank 0 where `tells`; others stay silent.
-    pub fn of(tells: bool, case: &Case) -> Self {
-        Self::new(tells, &case.run, expected_step(case))
+    /// Of a case; only the rank that `prints`, rank 0, writes anything.
+    pub fn of(prints: bool, case: &Case) -> Self {
+        Self::new(prints, &case.run, expected_step(case))
     }
 
-    /// Until a run has shown its steps, they are taken for as long as `expected` (s).
-    fn new(tells: bool, control: &RunControl, expected: Option<f64>) -> Self {
-        let draws = tells && Voice::now() == Voice::default();
+    /// At the start of a run its steps are taken to be `expected` (s).
+    fn new(prints: bool, control: &RunControl, expected: Option<f64>) -> Self {
+        let draws = prints && Verbosity::now() == Verbosity::default();
         let bar = draws.then(terminal).flatten().map(|target| {
             // Within 80 columns: a longer line would wrap and be drawn over and over.
             let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
@@ -54,7 +54,7 @@ impl Progress {
             ProgressBar::with_draw_target(Some(TICKS), target).with_style(style)
         });
         Self {
-            tells,
+            prints,
             bar,
             control: *control,
             expected,
@@ -64,7 +64,7 @@ impl Progress {
         }
     }
 
-    /// Shows where the run stands; gives a line for the log now and then.
+    /// Shows the progress; returns a line for the log every ten seconds.
     pub fn show(&mut self, state: &RunState) -> Option<String> {
         self.left = self.left(state);
         let left = left(self.left);
@@ -73,26 +73,26 @@ impl Progress {
             bar.set_message(text);
             bar.set_position(self.ticks(state));
         }
-        if !self.tells || self.last.elapsed() < LINE_EVERY {
+        if !self.prints || self.last.elapsed() < LINE_EVERY {
             return None;
         }
         self.last = Instant::now();
         let line = format!("{}{left}", line(state));
         if self.bar.is_none() {
-            tell(&line, &self.fields(state));
+            report(&line, &self.fields(state));
         }
         Some(line)
     }
 
-    /// The time that is left: what steps have taken so far, for each of those to come.
+    /// The time left: the mean time of the steps so far, for each of those to come.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     fn left(&mut self, state: &RunState) -> Option<Duration> {
         let now = (Instant::now(), state.step, state.time);
         let (begun, step, time) = *self.begun.get_or_insert(now);
         let (steps, way) = ((state.step - step) as f64, state.time - time);
         let to_come = self.control.end_time - state.time;
-        // Steps of the start tell little of those to come.
-        let is_start = way < SHOWN * (way + to_come);
+        // Steps of the start do not predict those to come.
+        let is_start = way < START * (way + to_come);
         let each = self.expected.filter(|_| is_start).unwrap_or(way / steps);
         let most = self
             .control
@@ -102,7 +102,7 @@ impl Progress {
         Duration::try_from_secs_f64(seconds).ok()
     }
 
-    /// What a line tells, as values.
+    /// The values in a line.
     fn fields(&self, state: &RunState) -> Map<String, Value> {
         [
             ("step", state.step.into()),
@@ -117,7 +117,7 @@ impl Progress {
         .collect()
     }
 
-    /// The time that was left when it was last shown.
+    /// The time left when it was last shown.
     pub fn time_left(&self) -> Option<Duration> {
         self.left
     }
@@ -134,20 +134,20 @@ impl Progress {
         (done.clamp(0.0, 1.0) * TICKS as f64) as u64
     }
 
-    /// A line, above the bar.
-    pub fn tell(&self, line: &str) {
+    /// Prints a line above the bar.
+    pub fn say(&self, line: &str) {
         self.above(|| say(line));
     }
 
-    /// A warning, above the bar.
+    /// Prints a warning above the bar.
     pub fn warn(&self, text: &str) {
         self.above(|| warn(text));
     }
 
-    fn above(&self, speak: impl FnOnce()) {
+    fn above(&self, print: impl FnOnce()) {
         match &self.bar {
-            Some(bar) => bar.suspend(speak),
-            None if self.tells => speak(),
+            Some(bar) => bar.suspend(print),
+            None if self.prints => print(),
             None => {}
         }
     }
@@ -160,7 +160,7 @@ impl Progress {
     }
 }
 
-/// The time that is left; nothing before the first steps have shown how fast they are.
+/// The time left, in words; nothing before it is known.
 fn left(time: Option<Duration>) -> String {
     time.map_or(String::new(), |time| {
         format!("  {:#} left", HumanDuration(time))
@@ -177,7 +177,7 @@ fn line(state: &RunState) -> String {
     )
 }
 
-/// The terminal that the user looks at. mpirun gives its ranks pipes in place of its own error
+/// The terminal of the user. mpirun gives its ranks pipes in place of its own error
 /// stream, so the bar goes straight to where that leads.
 fn terminal() -> Option<ProgressDrawTarget> {
     if std::io::stderr().is_terminal() {
@@ -207,24 +207,24 @@ mod tests {
         }
     }
 
-    fn progress(tells: bool) -> Progress {
+    fn progress(prints: bool) -> Progress {
         let control = RunControl {
             end_time: 2e-7,
             max_steps: Some(100),
         };
-        Progress::new(tells, &control, Some(1e-9))
+        Progress::new(prints, &control, Some(1e-9))
     }
 
     #[test]
     fn a_line_comes_every_ten_seconds_from_rank_0() {
-        for tells in [true, false] {
-            let mut progress = progress(tells);
+        for prints in [true, false] {
+            let mut progress = progress(prints);
             assert_eq!(progress.show(&state(1, 0.0)), None);
             progress.last = Instant::now().checked_sub(LINE_EVERY).unwrap();
             progress.begun = None;
             let line = progress.show(&state(7, 1e-8));
             let expected = "step 7  t = 10 ns  dt = 1.5 ns (force)";
-            assert_eq!(line.as_deref(), tells.then_some(expected));
+            assert_eq!(line.as_deref(), prints.then_some(expected));
             assert_eq!(progress.show(&state(8, 2e-8)), None);
         }
     }
@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(left(Some(Duration::from_secs(30))), "  30s left");
     }
 
-    /// Steps of the start are taken for as long as those that are foreseen; later ones tell themselves.
+    /// Steps of the start are taken to be as long as predicted; later ones predict themselves.
     #[test]
     fn the_time_that_is_left_is_told_from_the_second_step_on() {
         let mut progress = progress(false);

@@ -1,11 +1,11 @@
-//! A run that goes on from a checkpoint.
+//! A run that continues from a checkpoint.
 
 use std::path::PathBuf;
 
 use super::driver::Driver;
 use super::launch::{Launch, give_up};
 use super::options::CommonArgs;
-use super::saved_case::Settled;
+use super::saved_case::ResolvedCase;
 use super::say::seconds;
 use crate::output::RunFolder;
 use crate::output::checkpoint::Restored;
@@ -13,7 +13,7 @@ use engine::step::{Reason, RunState, Simulation};
 use model::Case;
 use particles::ParticleStore;
 
-/// What a run goes on from, and where.
+/// The checkpoint and the folder of a restart.
 pub struct Origin {
     /// The checkpoint.
     pub checkpoint: PathBuf,
@@ -21,9 +21,9 @@ pub struct Origin {
     pub particles: ParticleStore,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,
-    /// Where the run goes on.
+    /// Folder of the continued run.
     pub folder: RunFolder,
-    /// Whether this is the folder of the run itself.
+    /// Set if this is the folder of the run itself.
     pub own: bool,
 }
 
@@ -40,12 +40,12 @@ pub fn state_of(restored: &Restored) -> Result<RunState, String> {
     }
 }
 
-/// Sets up what goes on, which changes nothing that cannot be put back, and steps to the end;
-/// returns the exit code. Another folder than the run's own is cleared if `force`. Collective.
+/// Sets up a restart, which changes nothing that cannot be undone, and steps to the end; returns the
+/// exit code. Another folder than the run's own is cleared if `force`. Collective.
 pub fn go_on(
     launch: &Launch,
     args: &CommonArgs,
-    settled: Settled,
+    resolved_case: ResolvedCase,
     state: RunState,
     origin: Origin,
     force: bool,
@@ -61,13 +61,13 @@ pub fn go_on(
             seconds(time)
         ));
     }
-    let resolved = settled.case.resolved.clone();
-    let simulation = match Simulation::resume(settled.case, comm, state, origin.particles) {
+    let resolved = resolved_case.case.resolved.clone();
+    let simulation = match Simulation::resume(resolved_case.case, comm, state, origin.particles) {
         Ok(simulation) => simulation,
         Err(error) => return give_up(comm, &error.to_string()),
     };
     let begun = if origin.own {
-        let resolved = settled.renew.then_some(&resolved[..]);
+        let resolved = resolved_case.renew.then_some(&resolved[..]);
         folder.resume(comm, resolved, step, time, &origin.passed_over)
     } else {
         RunFolder::create(comm, folder.path(), &resolved, force).map(|_| None)
@@ -88,7 +88,7 @@ pub fn go_on(
     }
 }
 
-/// Where a run stands that has no step left to do.
+/// The reason why a run has no step left, if it has none.
 #[must_use]
 pub fn nothing_to_do(case: &Case, state: &RunState, until: Option<f64>) -> Option<String> {
     let (step, time) = (state.step, state.time);

@@ -1,5 +1,4 @@
-//! The case that a restart goes on with: the saved input, unless the user has edited the run's
-//! `case.toml`.
+//! The case of a restart: the saved input, unless the user has edited the run's `case.toml`.
 
 use std::fmt::Write as _;
 use std::io::ErrorKind;
@@ -9,32 +8,32 @@ use crate::output::{OutputError, RunFolder, from_root};
 use comm::Comm;
 use model::Case;
 
-/// A case to go on with.
-pub struct Settled {
+/// The case of a restart.
+pub struct ResolvedCase {
     /// The case.
     pub case: Case,
-    /// Whether `case.toml` says something else, or is missing.
+    /// Set if `case.toml` differs or is missing.
     pub renew: bool,
-    /// What the user should know of it.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// The case of the input `saved` in `place` with the overrides `set`. Where the run in `folder`
-/// goes on, its `case.toml` must say the same, or be accepted. Collective.
+/// The case of the input `saved` in `source` with the overrides `set`. If the run continues in its own
+/// `folder`, `case.toml` there must be the same, or be accepted. Collective.
 ///
 /// # Errors
 /// The whole message.
-pub fn settle(
+pub fn resolve(
     comm: &Comm,
     folder: Option<&RunFolder>,
-    place: &str,
+    source: &str,
     saved: &str,
     set: &[String],
     accept: bool,
-) -> Result<Settled, String> {
-    let name = format!("{place}: the saved input");
+) -> Result<ResolvedCase, String> {
+    let name = format!("{source}: the saved input");
     let case = input::parse(&name, saved, set).map_err(|error| error.to_string())?;
-    let settled = |case, renew| Settled {
+    let resolved = |case, renew| ResolvedCase {
         case,
         renew,
         warnings: Vec::new(),
@@ -44,22 +43,22 @@ pub fn settle(
         None => None,
     };
     let (Some(folder), Some(edited)) = (folder, edited) else {
-        return Ok(settled(case, true));
+        return Ok(resolved(case, true));
     };
     if is_same(&case.resolved, &edited) {
-        return Ok(settled(case, false));
+        return Ok(resolved(case, false));
     }
     if is_same(saved, &edited) {
-        return Ok(settled(case, true));
+        return Ok(resolved(case, true));
     }
     let name = folder.case().display().to_string();
     let taken = input::parse(&name, &edited, set).map_err(|error| error.to_string())?;
     let differences = input::differences(saved, &edited).unwrap_or_default();
     if !accept || !differences.iter().all(Difference::is_restartable) {
-        return Err(refusal(&name, place, &differences));
+        return Err(refusal(&name, source, &differences));
     }
-    let change = |found: &Difference| format!("{name} is taken: {}", told(found, "before"));
-    Ok(Settled {
+    let change = |found: &Difference| format!("{name} is taken: {}", describe(found, "before"));
+    Ok(ResolvedCase {
         case: taken,
         renew: true,
         warnings: differences.iter().map(change).collect(),
@@ -76,18 +75,14 @@ fn text_of(comm: &Comm, folder: &RunFolder) -> Result<Option<String>, OutputErro
     from_root(comm, || match std::fs::read_to_string(&path) {
         Ok(text) => Ok(Some(text)),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(source) => Err(OutputError::Io {
-            action: "read",
-            path: path.clone(),
-            source,
-        }),
+        Err(error) => Err(OutputError::io("read", &path)(error)),
     })
 }
 
-fn refusal(name: &str, place: &str, differences: &[Difference]) -> String {
-    let mut text = format!("error: {name} is not the input saved in {place}:\n");
+fn refusal(name: &str, source: &str, differences: &[Difference]) -> String {
+    let mut text = format!("error: {name} is not the input saved in {source}:\n");
     for found in differences {
-        let _ = writeln!(text, "  {}", told(found, "saved"));
+        let _ = writeln!(text, "  {}", describe(found, "saved"));
     }
     let fixed = differences.iter().filter(|found| !found.is_restartable());
     let fixed: Vec<&str> = fixed.map(|found| found.key.as_str()).collect();
@@ -107,7 +102,7 @@ fn refusal(name: &str, place: &str, differences: &[Difference]) -> String {
     text
 }
 
-fn told(found: &Difference, other: &str) -> String {
+fn describe(found: &Difference, other: &str) -> String {
     let [saved, edited] = &found.values;
     let word = |value: &Option<String>| value.clone().unwrap_or_else(|| "absent".to_owned());
     format!("{}: {} ({other}: {})", found.key, word(edited), word(saved))

@@ -1,54 +1,54 @@
-//! Lines for the user. Each goes out in one call, so that those of two ranks do not mix; and that
-//! nobody listens any more (a closed pipe) is no reason to end a run. Names, paths and words of the
-//! command line may hold control characters, which never reach the terminal as such.
+//! Lines for the user. Each goes out in one call, so that those of two ranks do not mix. A closed pipe
+//! is no reason to end a run. Names, paths and words of the command line may hold control characters,
+//! which never reach the terminal as such.
 
 use std::io::Write;
 
 use serde_json::{Map, Value};
 
-use super::voice::{self, Voice};
+use super::verbosity::{self, Verbosity};
 use model::readable::{printable, shown};
 
-/// A line of output.
+/// Prints a line of output.
 pub fn say(line: &str) {
-    tell(line, &Map::new());
+    report(line, &Map::new());
 }
 
-/// A line of output, with what it tells as values for those who read JSON.
-pub fn tell(line: &str, fields: &Map<String, Value>) {
-    let Voice { quiet, json } = Voice::now();
+/// Prints a line of output, in JSON with its values as fields.
+pub fn report(line: &str, fields: &Map<String, Value>) {
+    let Verbosity { quiet, json } = Verbosity::now();
     if quiet {
         return;
     }
     if json {
-        out(&voice::event("info", line, fields));
+        out(&verbosity::event("info", line, fields));
     } else {
         out(&printable(line));
     }
 }
 
-/// A line of the log, which those alone hear who read JSON.
+/// Prints a line of the log, in JSON output only.
 pub fn note(line: &str) {
-    if Voice::now().json {
+    if Verbosity::now().json {
         say(line);
     }
 }
 
-/// A JSON document, in any voice.
+/// Prints a JSON document, whatever the verbosity.
 pub fn document(value: &Value) {
-    out(&voice::document(value));
+    out(&verbosity::document(value));
 }
 
-/// A diagnostic or a warning, which may have several lines.
+/// Prints a diagnostic or a warning, which may have several lines.
 pub fn warn(text: &str) {
     let text = text.trim_end();
-    if Voice::now().json {
+    if Verbosity::now().json {
         let found = ["error", "warning"].into_iter().find_map(|level| {
             let message = text.strip_prefix(level)?.strip_prefix(": ")?;
             Some((level, message))
         });
         let (level, message) = found.unwrap_or(("warning", text));
-        out(&voice::event(level, message, &Map::new()));
+        out(&verbosity::event(level, message, &Map::new()));
         return;
     }
     let _ = std::io::stderr().write_all(format!("{}\n", printable(text)).as_bytes());

@@ -11,7 +11,7 @@ use engine::step::Simulation;
 use model::Case;
 
 /// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
-/// returns the exit code. What looks like a mistake in the case and `more` is said. Collective.
+/// returns the exit code. Prints warnings about the case and `more`. Collective.
 pub fn start(
     launch: &Launch,
     args: &CommonArgs,

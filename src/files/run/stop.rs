@@ -1,4 +1,4 @@
-//! Why a run may stop early: signals, a file, the clock, a time the user named.
+//! Reasons to stop a run early: signals, a file, the clock, a time given by the user.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,13 +19,13 @@ const CLOCK: u64 = 4;
 /// Not to stop, but to write a checkpoint.
 const CHECKPOINT: u64 = 8;
 
-/// What a checkpoint is taken to cost (s) before anything has been written, as after a restart.
+/// Assumed time of a checkpoint (s) before anything has been written, as after a restart.
 const FIRST_COST: f64 = 1.0;
 
-/// Seconds between two looks at the file system.
+/// Time between two checks of the file system.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
-/// Whether a signal has asked this process to stop.
+/// A flag that a signal to stop this process sets.
 #[derive(Debug, Clone)]
 pub struct Signals(Arc<AtomicBool>);
 
@@ -51,12 +51,12 @@ pub struct Watch {
     limit: Option<Duration>,
     looked: Instant,
     seen: bool,
-    /// Time between checkpoints, when the last one was whole, and what the next one will cost (s), as
-    /// of what has been written so far; rank 0 alone asks for them.
+    /// Interval of checkpoints (of rank 0 alone), the end of the last one, and the predicted time of the
+    /// next one (s).
     every: Option<ClockInterval>,
     last: Instant,
     cost: f64,
-    /// Time that a stop will take, as of what has been written so far.
+    /// Predicted time of a stop.
     reserve: Duration,
 }
 
@@ -83,14 +83,13 @@ impl Watch {
         }
     }
 
-    /// Asks for checkpoints every so often by the clock.
+    /// Requests checkpoints at an interval of the clock.
     pub fn ask_every(&mut self, every: Option<ClockInterval>) {
         self.every = every;
     }
 
-    /// A checkpoint has been written in so much time. The next one is taken to need half as much
-    /// again, and that much is kept of the wall time. Gives the time to the next one where that
-    /// follows from it.
+    /// Notes the time that a checkpoint took. The next one is assumed to take half as much again, which
+    /// is reserved of the wall time. Returns the time to the next one if that follows from it.
     pub fn wrote_checkpoint(&mut self, took: Duration) -> Option<Duration> {
         self.last = Instant::now();
         self.cost = took.as_secs_f64();
@@ -105,7 +104,7 @@ impl Watch {
         Duration::try_from_secs_f64(seconds).ok()
     }
 
-    /// A snapshot has been written in so much time: a checkpoint is some twice as large.
+    /// Notes the time that a snapshot took: a checkpoint is about twice as large.
     pub fn wrote_snapshot(&mut self, took: Duration) {
         if self.reserve.is_zero() {
             self.cost = 2.0 * took.as_secs_f64();
@@ -145,12 +144,12 @@ impl Watch {
     }
 }
 
-/// Whether the clock asks for a checkpoint.
+/// Returns true if the clock requests a checkpoint.
 pub fn wants_checkpoint(requests: u64) -> bool {
     requests & CHECKPOINT != 0
 }
 
-/// Why all ranks stop, in words; `None` if nobody asks to.
+/// The reason why all ranks stop, in words; `None` if there is no request.
 pub fn reason(requests: u64) -> Option<&'static str> {
     if requests & SIGNAL != 0 {
         Some("a signal asked to stop")
@@ -176,8 +175,8 @@ pub fn parse_walltime(text: &str) -> Result<Duration, String> {
     let wrong = || format!("`{text}` is no wall time; write 90s, 15min, 2h or 1:30:00");
     let seconds = if text.contains(':') {
         let mut total = 0.0;
-        for part in text.split(':') {
-            total = total * 60.0 + part.parse::<f64>().map_err(|_| wrong())?;
+        for field in text.split(':') {
+            total = total * 60.0 + field.parse::<f64>().map_err(|_| wrong())?;
         }
         total
     } else {

@@ -11,19 +11,19 @@ use comm::{self, Comm};
 use engine::step::{Removed, Simulation, failed_mass};
 use model::SphForm;
 
-/// How long a run took.
+/// Times of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Clock {
     /// Seconds since the start of the program.
     pub wall: f64,
-    /// Of them those from the start of MPI to the first step.
+    /// Seconds from the start of MPI to the first step.
     pub set_up: f64,
-    /// And those of output.
+    /// Seconds of output.
     pub output: Seconds,
 }
 
-/// `summary.json`: what the run has come to, and how fast this process has stepped (with the mean
-/// seconds of all ranks by phase). Collective.
+/// `summary.json`: results of the run, and the speed of this process (with the mean seconds of all ranks by
+/// phase). Collective.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_json::Value {
     let load = load(comm, simulation);
@@ -38,7 +38,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     let failed = failed_by_body(comm, simulation);
     let departed = departed_by_body(simulation);
     let normalised = simulation.case.sph.form != SphForm::Conventional;
-    // What the ranks have stepped since they started, if no particle was taken out.
+    // Steps since the start of the process, if no particle was removed.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
     json!({
@@ -67,7 +67,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "bytes_sent_per_rank_and_step": each(load.bytes),
         "seconds_by_phase": object(phases),
         "output_share": clock.output.share(clock.wall),
-        "output_seconds": object(clock.output.by_kind()),
+        "output_seconds": object(clock.output.by_name()),
         "energy_error_max": worst.energy_error,
         "contact_defect": worst.contact_defect,
         "momentum_error": object(["x", "y", "z"].into_iter().zip(worst.momentum_error)),
@@ -86,12 +86,12 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     })
 }
 
-/// How many particles were taken out.
+/// Number of removed particles.
 fn taken_out(removed: &[Removed]) -> u64 {
     removed.iter().map(|removed| removed.particles).sum()
 }
 
-/// Axes of the slabs by level, and how often they have changed.
+/// Axes of the slabs by level, and the number of their changes.
 fn decomposition(simulation: &Simulation) -> serde_json::Value {
     let axes = simulation.axes_of_slabs();
     let names: Vec<&str> = axes.iter().map(|axis| axis.name()).collect();
@@ -109,7 +109,7 @@ fn rate(updates: u64, phases: &[(&str, f64)], cores: usize) -> f64 {
     updates as f64 * 1e-6 / stepping.max(f64::MIN_POSITIVE) / cores as f64
 }
 
-/// What absorbing zones have taken up (J), and what has yielded in them (kg), where there are any.
+/// Energy absorbed (J) and mass yielded (kg) in absorbing zones, if there are any.
 fn absorbing_zones(simulation: &Simulation) -> Option<serde_json::Value> {
     let state = &simulation.state;
     let zones = &state.loads[simulation.case.absorber_ledgers()];
@@ -118,7 +118,7 @@ fn absorbing_zones(simulation: &Simulation) -> Option<serde_json::Value> {
     (!zones.is_empty()).then(|| json!({ "absorbed_energy": taken, "yielded_mass": yielded }))
 }
 
-/// The nearest two particles of two bodies so far, and whose they are.
+/// The nearest two particles of two bodies so far, and those bodies.
 fn nearest(simulation: &Simulation) -> Option<serde_json::Value> {
     simulation.state.worst.nearest.map(|pair| {
         let names = pair.bodies.map(|b| &simulation.case.bodies[b].name);
@@ -126,7 +126,7 @@ fn nearest(simulation: &Simulation) -> Option<serde_json::Value> {
     })
 }
 
-/// What has left the box of interest, by body, where there is one.
+/// Sums over the particles that have left the box of interest, by body, if there is one.
 fn departed_by_body(simulation: &Simulation) -> Option<BTreeMap<&str, serde_json::Value>> {
     let departed = &simulation.state.departed;
     let names = simulation.case.bodies.iter().map(|body| body.name.as_str());
@@ -145,7 +145,7 @@ fn departed_by_body(simulation: &Simulation) -> Option<BTreeMap<&str, serde_json
     (!departed.is_empty()).then(|| names.zip(departed.iter().map(row)).collect())
 }
 
-/// Mass that has failed (kg) by body, where matter may fail. Collective.
+/// Failed mass (kg) by body, if any material may fail. Collective.
 fn failed_by_body<'a>(comm: &Comm, simulation: &'a Simulation) -> Option<BTreeMap<&'a str, f64>> {
     let bodies = &simulation.case.bodies;
     simulation.case.may_fail().then(|| {
@@ -155,7 +155,7 @@ fn failed_by_body<'a>(comm: &Comm, simulation: &'a Simulation) -> Option<BTreeMa
     })
 }
 
-/// Means over ranks of seconds with names.
+/// Means over ranks of named seconds.
 #[allow(
     clippy::cast_precision_loss,
     clippy::cast_possible_truncation,

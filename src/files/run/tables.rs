@@ -27,15 +27,15 @@ pub struct Tables {
     /// Figures of measures, and their distributions.
     measures: Option<[Table; 2]>,
     gauges: Option<Table>,
-    /// The same of many gauges.
+    /// In place of these where there are many gauges.
     gauge_records: Option<GaugeRecords>,
-    /// What has passed witness planes, and who.
+    /// Sums over the particles that have passed witness planes, and the particles.
     witnesses: Option<[Table; 2]>,
     performance: Table,
     ranks: Table,
 }
 
-/// The directions in which a witness plane is passed, that of its normal first.
+/// The directions through a witness plane, that of its normal first.
 const DIRECTIONS: [&str; 2] = ["forwards", "backwards"];
 
 /// The columns of the history of a case, from whose box of interest particles may have departed.
@@ -57,7 +57,7 @@ fn of_history(case: &Case, departs: bool) -> Vec<Column> {
     all
 }
 
-/// Starts a table, or goes on with it after the last value of a column.
+/// Starts a table, or continues it after the last value of a column.
 fn open(
     path: &Path,
     columns: &[Column],
@@ -70,7 +70,7 @@ fn open(
     }
 }
 
-/// The tables of what measures find, if the case has any, after a time (s).
+/// The tables of measures, if the case has any, after a time (s).
 fn of_measures(
     folder: &RunFolder,
     case: &Case,
@@ -85,7 +85,7 @@ fn of_measures(
     Ok(Some([figures, distributions]))
 }
 
-/// The columns of what gauges read.
+/// The columns of gauges.
 fn of_gauges(simulation: &Simulation) -> Vec<Column> {
     let mut all = columns(simulation.case.dimension, GAUGES);
     let readings = simulation.gauges().columns();
@@ -100,7 +100,7 @@ fn records(folder: &RunFolder, case: &Case, columns: Vec<Column>) -> GaugeRecord
 }
 
 impl Tables {
-    /// Starts the tables of a run of `case`, or goes on with them after the state `resume`.
+    /// Starts the tables of a run, or continues them after the state `resume`.
     pub fn open(
         folder: &RunFolder,
         simulation: &Simulation,
@@ -149,8 +149,8 @@ impl Tables {
             witnesses: (!case.measure.witnesses.is_empty())
                 .then(|| {
                     let passed = open(&folder.witness(), &columns(WITNESS), "time", time)?;
-                    let who = open(&folder.crossings(), &columns(CROSSINGS), "step", step)?;
-                    Ok([passed, who])
+                    let crossings = open(&folder.crossings(), &columns(CROSSINGS), "step", step)?;
+                    Ok([passed, crossings])
                 })
                 .transpose()?,
             performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
@@ -158,7 +158,7 @@ impl Tables {
         })
     }
 
-    /// Writes a row of each, after `wall` seconds; `bodies` are measured where the case asks for it.
+    /// Writes a row of each, after `wall` seconds; `bodies` are empty where they are not measured.
     pub fn write(
         &mut self,
         simulation: &Simulation,
@@ -226,15 +226,15 @@ impl Tables {
         self.history.row(&row)
     }
 
-    /// Writes what has passed witness planes.
+    /// Writes sums over the particles that have passed witness planes.
     fn write_passed(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
         if let Some([table, _]) = &mut self.witnesses {
             let mut passed = measurements::passed(simulation).into_iter();
             for plane in &case.measure.witnesses {
                 for body in &case.bodies {
-                    for (way, passed) in DIRECTIONS.into_iter().zip(&mut passed) {
-                        let names = [&plane.name, &body.name, way];
+                    for (direction, passed) in DIRECTIONS.into_iter().zip(&mut passed) {
+                        let names = [&plane.name, &body.name, direction];
                         table.row(&witness_row(state.time, names, &passed))?;
                     }
                 }
@@ -243,7 +243,7 @@ impl Tables {
         Ok(())
     }
 
-    /// Writes what the gauges have read in this step.
+    /// Writes the readings of gauges in this step.
     pub fn write_gauges(
         &mut self,
         simulation: &Simulation,
@@ -255,7 +255,7 @@ impl Tables {
                 let values = gauge.values.iter().map(|value| value.unwrap_or(f64::NAN));
                 let numbers = gauge.position.into_iter().chain([gauge.coverage]);
                 let number = u32::try_from(gauge.gauge).unwrap_or(u32::MAX);
-                records.add((state.step, state.time), number, numbers.chain(values));
+                records.add(state.step, state.time, number, numbers.chain(values));
             }
             return records.write_much();
         }
@@ -271,7 +271,7 @@ impl Tables {
         }))
     }
 
-    /// Writes what measures find now.
+    /// Writes the findings of measures now.
     pub fn write_findings(
         &mut self,
         simulation: &Simulation,
@@ -286,7 +286,7 @@ impl Tables {
         distributions.rows(measures::distributions(time, all()))
     }
 
-    /// Writes who has passed witness planes.
+    /// Writes the particles that have passed witness planes.
     pub fn write_crossings(
         &mut self,
         case: &Case,
@@ -298,20 +298,20 @@ impl Tables {
         table.rows(crossings.iter().map(|crossing| {
             let plane = &case.measure.witnesses[crossing.plane].name;
             let body = &case.bodies[crossing.body].name;
-            let way = DIRECTIONS[usize::from(!crossing.forwards)];
-            crossing_row(crossing, [plane, body, way])
+            let direction = DIRECTIONS[usize::from(!crossing.forwards)];
+            crossing_row(crossing, [plane, body, direction])
         }))
     }
 
-    /// Writes what many gauges have read and what waits in memory: also of a run that fails, since what led
-    /// to it is worth having.
+    /// Writes the readings of many gauges that wait in memory, also of a run that fails, since they may show
+    /// the cause.
     pub fn write_records(&mut self) -> Result<(), OutputError> {
         self.gauge_records
             .as_mut()
             .map_or(Ok(()), GaugeRecords::write)
     }
 
-    /// Brings all rows written so far to the disk.
+    /// Syncs all rows written so far to the disk.
     pub fn sync(&mut self) -> Result<(), OutputError> {
         self.write_records()?;
         let always = [

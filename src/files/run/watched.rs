@@ -1,4 +1,4 @@
-//! What `status.json` tells of a run that goes on, for those who watch it.
+//! The outlook in `status.json`, for watching a run.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -12,10 +12,10 @@ use model::RunControl;
 const MOST: usize = 64;
 /// Least time between two files.
 const EVERY: Duration = Duration::from_secs(2);
-/// Part of the time, at most, that goes into them.
+/// Least time between two files over the time of writing one.
 const SHARE: u32 = 100;
 
-/// What rank 0 keeps of a run for its status.
+/// Data of a run that rank 0 keeps for its status.
 #[derive(Debug)]
 pub struct Watched {
     control: RunControl,
@@ -23,7 +23,7 @@ pub struct Watched {
     begun: Instant,
     first_step: u64,
     energies: Energies,
-    /// Rows so far, and of how many one is kept.
+    /// Rows so far; every `stride`-th is kept.
     rows: usize,
     stride: usize,
     ranks: usize,
@@ -35,17 +35,18 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// Of a run in its folder that begins, or goes on with the energies of its past.
+    /// Of a run in its folder that begins, or continues with the energies of its past.
     pub fn begin(comm: &Comm, folder: &RunFolder, simulation: &Simulation, goes_on: bool) -> Self {
         let before = (goes_on && comm.is_root()).then(|| folder.status().ok()?.outlook);
         let past = before.flatten().map(|outlook| outlook.energies);
         let case = &simulation.case;
-        Self::of((&case.run, case.dimension), &simulation.state, past)
+        Self::of(&case.run, case.dimension, &simulation.state, past)
     }
 
-    /// Of a run that steps from a state on.
+    /// Of a run that begins at a state.
     fn of(
-        (control, dimension): (&RunControl, usize),
+        control: &RunControl,
+        dimension: usize,
         state: &RunState,
         past: Option<Energies>,
     ) -> Self {
@@ -69,7 +70,7 @@ impl Watched {
         }
     }
 
-    /// Takes in a row of the tables.
+    /// Adds a row of the tables.
     pub fn row(&mut self, state: &RunState, load: &Load) {
         self.ranks = load.ranks();
         self.particles = load.particles[0];
@@ -86,7 +87,7 @@ impl Watched {
         if values.iter().any(|value| !value.is_finite()) {
             return;
         }
-        // The last row is always there; it gives way to the next unless it is one to be kept.
+        // The last row is always there; the next replaces it unless it is one to be kept.
         let last = self.energies.time.len();
         if self.rows > 0 && !(self.rows - 1).is_multiple_of(self.stride) {
             self.energies.retain(|n| n + 1 < last);
@@ -99,18 +100,18 @@ impl Watched {
         }
     }
 
-    /// Whether the file is to be written anew.
+    /// Returns true if the file is to be rewritten.
     pub fn is_due(&self) -> bool {
         self.last.elapsed() >= self.wait
     }
 
-    /// It has been written, from a time on.
+    /// Notes that it has been written, beginning at a time.
     pub fn wrote(&mut self, begun: Instant) {
         self.last = Instant::now();
         self.wait = EVERY.max(begun.elapsed() * SHARE);
     }
 
-    /// What the file tells, with the time that is left if that is known.
+    /// The outlook, with the time left if that is known.
     #[allow(clippy::cast_precision_loss, reason = "for people")]
     pub fn outlook(&self, state: &RunState, wall: f64, left: Option<Duration>) -> Outlook {
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -135,7 +136,7 @@ impl Watched {
     }
 }
 
-/// A number to six digits: it is only looked at.
+/// Rounds a number for display to six digits.
 fn digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }
@@ -162,7 +163,7 @@ mod tests {
             end_time: 1.0,
             max_steps: None,
         };
-        let mut watched = Watched::of((&control, 3), &RunState::default(), None);
+        let mut watched = Watched::of(&control, 3, &RunState::default(), None);
         let load = Load::of_equals(3, 12);
         for n in 0..rows {
             watched.row(&state(f64::from(n)), &load);
@@ -194,11 +195,11 @@ mod tests {
     fn a_restart_goes_on_with_the_past_before_it() {
         let past = after(50).energies;
         let control = after(0).control;
-        let watched = Watched::of((&control, 3), &state(20.0), Some(past));
+        let watched = Watched::of(&control, 3, &state(20.0), Some(past));
         assert_eq!(watched.energies.time.len(), 21);
         let mut broken = after(5).energies;
         broken.total.pop();
-        let watched = Watched::of((&control, 3), &state(20.0), Some(broken));
+        let watched = Watched::of(&control, 3, &state(20.0), Some(broken));
         assert_eq!(watched.energies, Energies::default());
     }
 

@@ -24,7 +24,7 @@ pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
         let d = request.dimension;
         return Err(format!("it is of a model of {dimension} dimensions, not {d}").into());
     }
-    if let Some(part) = file.part().map_err(told)? {
+    if let Some(part) = file.portion().map_err(told)? {
         let part = format!("it holds a part of the model alone ({part})");
         return Err(format!("{part}; give a snapshot of all particles").into());
     }

@@ -1,4 +1,4 @@
-//! Folders of runs: taken, cleared, and gone on in.
+//! Folders of runs: taken, cleared and continued.
 
 use super::*;
 
@@ -10,8 +10,8 @@ fn write(path: PathBuf) {
 #[test]
 fn a_used_folder_is_refused_and_force_clears_only_a_run() {
     let comm = Comm::solo();
-    let place = tempfile::tempdir().unwrap();
-    let path = place.path().join("deep/run");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("deep/run");
     let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
     assert_eq!(run.status().unwrap().state, Phase::Running);
     let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
@@ -41,10 +41,10 @@ fn a_used_folder_is_refused_and_force_clears_only_a_run() {
 
 #[test]
 fn force_leaves_a_folder_alone_that_holds_no_run() {
-    let place = tempfile::tempdir().unwrap();
-    let case = place.path().join("case.toml");
+    let folder = tempfile::tempdir().unwrap();
+    let case = folder.path().join("case.toml");
     write(case.clone());
-    let refused = RunFolder::create(&Comm::solo(), place.path(), "", true).unwrap_err();
+    let refused = RunFolder::create(&Comm::solo(), folder.path(), "", true).unwrap_err();
     assert!(matches!(refused, OutputError::NotARun { .. }));
     assert_eq!(fs::read_to_string(case).unwrap(), "x");
 }
@@ -52,8 +52,8 @@ fn force_leaves_a_folder_alone_that_holds_no_run() {
 #[test]
 fn a_restart_sets_aside_what_came_after_its_checkpoint() {
     let comm = Comm::solo();
-    let place = tempfile::tempdir().unwrap();
-    let run = RunFolder::create(&comm, place.path(), "", false).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let run = RunFolder::create(&comm, folder.path(), "", false).unwrap();
     for step in [2, 4, 6] {
         write(run.snapshot(step));
         let time = f64::from(u32::try_from(step).unwrap());

@@ -1,4 +1,4 @@
-//! The folder of a run's checkpoints: their names, which are whole, and which go.
+//! The folder of a run's checkpoints: names, whole and damaged ones, and removal of old ones.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use super::manifest::MANIFEST;
 use crate::output::{OutputError, files};
 
-/// What a checkpoint ends with while a new one of its step takes its name.
+/// Ending of a checkpoint while a new one of its step takes its name.
 const OLD: &str = ".old";
-/// What a checkpoint ends with that a restart has passed over as damaged.
+/// Ending of a checkpoint that a restart has passed over as damaged.
 pub(in crate::output) const DAMAGED: &str = ".damaged";
 
-/// Folders named like checkpoints that are none, since they lack a manifest, newest first.
+/// Folders named like checkpoints but without a manifest, newest first.
 ///
 /// # Errors
 /// [`OutputError::Io`].
@@ -40,7 +40,7 @@ pub fn list_damaged(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
     Ok(found)
 }
 
-/// Whether a name is that of a checkpoint passed over: its step, `.damaged` and maybe a number.
+/// Returns true if a name is that of a checkpoint passed over: its step, `.damaged` and maybe a number.
 pub(in crate::output) fn is_damaged(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let step = name.rsplit_once(DAMAGED).map(|(step, _)| Path::new(step));
@@ -70,7 +70,7 @@ pub fn list(folder: &Path) -> Result<Vec<(u64, PathBuf)>, OutputError> {
     Ok(found.into_iter().collect())
 }
 
-/// Whether a folder has a manifest, which is written last.
+/// Returns true if a folder has a manifest, which is written last.
 fn is_whole(path: &Path) -> Result<bool, OutputError> {
     let manifest = path.join(MANIFEST);
     let there = manifest.try_exists();
@@ -89,7 +89,7 @@ pub(in crate::output) fn step_of(path: &Path, ending: &str) -> Option<u64> {
     digits.parse().ok()
 }
 
-/// Gives a finished checkpoint its name; an older one of the same step goes once it has.
+/// Gives a finished checkpoint its name, then removes an older one of the same step.
 pub(super) fn replace(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     files::sync_folder(temporary)?;
     let mut old = path.as_os_str().to_owned();
@@ -105,7 +105,7 @@ pub(super) fn replace(temporary: &Path, path: &Path) -> Result<(), OutputError> 
     discard(&old)
 }
 
-/// Removes a checkpoint, if it exists; cut short it leaves nothing that looks like one.
+/// Removes a checkpoint, if it exists; if interrupted, it leaves nothing that looks like one.
 pub(in crate::output) fn discard(path: &Path) -> Result<(), OutputError> {
     let temporary = files::partial(path);
     files::remove(&temporary)?;
@@ -116,7 +116,7 @@ pub(in crate::output) fn discard(path: &Path) -> Result<(), OutputError> {
     }
 }
 
-/// Removes all but the newest `keep` checkpoints up to `step`, and what a crash left half done.
+/// Removes all but the newest `keep` checkpoints up to `step`, and unfinished ones left by a crash.
 pub(super) fn prune(folder: &Path, step: u64, keep: usize) -> Result<(), OutputError> {
     let mut old = list(folder)?;
     old.retain(|&(other, _)| other < step);

@@ -1,4 +1,4 @@
-//! What a checkpoint tells of itself, and the file that makes a folder one.
+//! The manifest of a checkpoint, which makes a folder one.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::output::{OutputError, files};
 pub const FORMAT: u64 = 1;
 /// The file that makes a folder a checkpoint.
 pub const MANIFEST: &str = "manifest.json";
-/// What to do about a damaged checkpoint.
+/// Advice on a damaged checkpoint.
 pub(super) const OLDER: &str = "restart from an older checkpoint";
 
 /// `manifest.json`.
@@ -28,7 +28,7 @@ pub struct Manifest {
     pub time: f64,
     /// Number of particles.
     pub particles: u64,
-    /// How many ranks wrote it.
+    /// Number of ranks that wrote it.
     pub ranks: usize,
     /// Bytes of the state file.
     pub size: u64,

@@ -3,7 +3,7 @@
 //! `step-NNNNNNNN/` holds `state.h5` (each state field in id order, the caller's own state and the
 //! resolved input as text) and `manifest.json` (sizes and digests). It is written under another
 //! name and renamed at the end; an older one of the same step is called `.old` meanwhile, and
-//! counts as long as there is no other. Any number of ranks may read it.
+//! is valid as long as there is no other. Any number of ranks may read it.
 
 mod folder;
 mod manifest;

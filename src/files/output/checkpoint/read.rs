@@ -9,7 +9,7 @@ use crate::output::{Block, OutputError, agree, digest, from_root};
 use comm::Comm;
 use particles::{FieldInfo, Life, ParticleStore, rows};
 
-/// What [`read`] gives beside the particles.
+/// The result of [`read`] beside the particles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Restored {
     /// Step number.
@@ -27,9 +27,9 @@ pub struct Restored {
 }
 
 /// Reads a checkpoint: each rank gets an even share of the particles in id order into `particles`,
-/// in the fields that the file holds and no others; the caller sizes what else its case uses
+/// in the fields that the file holds and no others; the caller sizes the other fields of its case
 /// ([`ParticleStore::resize_owned`]) and moves the particles to their owners. Collective. Digests
-/// are checked before HDF5 sees the file, so that what HDF5 meets afterwards is no damage.
+/// are checked before HDF5 sees the file, so that a later error of HDF5 is no damage.
 ///
 /// # Errors
 /// The same text on every rank: [`OutputError::Damaged`] if it is not what was written,
@@ -90,8 +90,8 @@ fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputEr
     Err(OutputError::damaged(state, what))
 }
 
-/// The fields in the file, if it holds this program's state, no less (but for what the case had no
-/// use for, which is zero) and no more.
+/// The fields in the file, if it holds this program's state, no less (but for optional fields, which are
+/// zero) and no more.
 fn check_content(
     file: &Content,
     manifest: &Manifest,
@@ -131,10 +131,9 @@ fn check_content(
     }
 }
 
-/// Refuses rows that do not stand in the order of their ids, each rank having its block.
-/// Collective.
+/// Refuses rows that are not in the order of their ids, each rank having its block. Collective.
 fn check_ids(comm: &Comm, state: &Path, ids: &[u64]) -> Result<(), OutputError> {
-    // The last id before each rank's block, if any stands there.
+    // The last id before each rank's block, if there is one.
     let mut lasts = Vec::new();
     let last = ids.last().copied();
     comm.all_gather_u64(

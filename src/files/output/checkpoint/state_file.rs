@@ -20,7 +20,7 @@ pub fn state_file(folder: &Path) -> PathBuf {
     folder.join(STATE)
 }
 
-/// How the rows of a field stand in a file.
+/// The type of a field's rows in a file.
 pub(in crate::output) fn row_type(kind: FieldKind) -> RowType {
     let element = match kind {
         FieldKind::Id => Element::U64,

@@ -8,12 +8,12 @@ use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
 use crate::output::h5::Writer;
 use crate::output::{
-    OutputError, Rows, VERSION, commit, digest, files, on_root, settle, write_json,
+    OutputError, Rows, VERSION, commit, digest, files, on_root, publish_or_remove, write_json,
 };
 use comm::Comm;
 use particles::{Life, ParticleStore};
 
-/// What a checkpoint says beside the particles.
+/// Metadata of a checkpoint.
 #[derive(Debug, Clone, Copy)]
 pub struct Meta<'a> {
     /// Step number.
@@ -27,7 +27,7 @@ pub struct Meta<'a> {
 }
 
 /// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
-/// Collective. Gives the checkpoint's path.
+/// Collective. Returns the checkpoint's path.
 ///
 /// # Errors
 /// The same on every rank; older checkpoints are then all still there.
@@ -45,15 +45,15 @@ pub fn write(
         files::remove(&temporary)?;
         fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
     })?;
-    let written = write_parts(comm, &temporary, particles, meta, rows);
-    settle(comm, written, &temporary, || {
+    let written = write_files(comm, &temporary, particles, meta, rows);
+    publish_or_remove(comm, written, &temporary, || {
         replace(&temporary, &path)?;
         prune(folder, meta.step, keep)
     })?;
     Ok(path)
 }
 
-fn write_parts(
+fn write_files(
     comm: &Comm,
     folder: &Path,
     particles: &ParticleStore,

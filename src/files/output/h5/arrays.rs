@@ -20,10 +20,10 @@ impl ArrayFile {
         Gate::open(None, path).map(Self)
     }
 
-    /// What is in the first group, in alphabetical order.
+    /// Names in the root group, in alphabetical order.
     ///
     /// # Errors
-    /// What HDF5 says.
+    /// The message of HDF5.
     pub fn names(&self) -> Result<Vec<String>, String> {
         self.0.members("/").map_err(|cause| explain(&cause))
     }
@@ -34,13 +34,13 @@ impl ArrayFile {
     /// If there is no such array of numbers that lies in one piece.
     pub fn values(&self, name: &str) -> Result<(usize, Vec<f64>), String> {
         let read = || {
-            let found = self.0.numbers(name)?;
-            let bytes = found.bytes(Block {
-                total: found.rows,
+            let dataset = self.0.numbers(name)?;
+            let bytes = dataset.bytes(Block {
+                total: dataset.rows,
                 first: 0,
-                count: found.count(),
+                count: dataset.count(),
             })?;
-            Ok((found.row.components, found.row.element.reals(&bytes)))
+            Ok((dataset.row.components, dataset.row.element.reals(&bytes)))
         };
         read().map_err(|cause: hdf5::Error| explain(&cause))
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::output::{Block, OutputError};
 use comm::Comm;
 
-use super::gate::{self, Found, Gate};
+use super::gate::{self, Gate, Located};
 use super::{Element, Number, RowType, explain};
 
 /// A dataset of a file.
@@ -61,7 +61,7 @@ impl Content {
         &self.path
     }
 
-    /// Whether there is a group or dataset of this name.
+    /// Returns true if there is a group or dataset of this name.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.gate.has(name)
@@ -72,7 +72,7 @@ impl Content {
     /// # Errors
     /// As [`Self::array`].
     pub fn arrays(&self, group: &str) -> Result<Vec<Array>, OutputError> {
-        let names = self.told(group, self.gate.members(group))?;
+        let names = self.converted(group, self.gate.members(group))?;
         let array = |name: &String| self.array(&format!("{group}/{name}"));
         names.iter().map(array).collect()
     }
@@ -87,15 +87,15 @@ impl Content {
             name: path.rsplit('/').next().unwrap_or(path).to_owned(),
             row: rows.row,
             rows: rows.rows,
-            unit: self.told(&format!("the unit of {path}"), rows.note_if_any("unit"))?,
-            description: self.told(
+            unit: self.converted(&format!("the unit of {path}"), rows.note_if_any("unit"))?,
+            description: self.converted(
                 &format!("the description of {path}"),
                 rows.note_if_any("description"),
             )?,
         })
     }
 
-    /// Reads a block of a dataset's rows, of the type that [`Self::array`] told, into `bytes`,
+    /// Reads a block of a dataset's rows, of the type that [`Self::array`] returned, into `bytes`,
     /// which is as long.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl Content {
         } else {
             Err("its rows have another type".into())
         };
-        self.told(path, read)
+        self.converted(path, read)
     }
 
     /// All of a short dataset of single values.
@@ -124,12 +124,12 @@ impl Content {
         let rows = self.numbers(path)?;
         if rows.row != RowType::single(T::ELEMENT) {
             let what = format!("its rows are not of one {} each", T::ELEMENT.name());
-            return self.told(path, Err(what.into()));
+            return self.converted(path, Err(what.into()));
         }
         self.values(path, &rows)
     }
 
-    /// All ids of a dataset: VTK has no unsigned ones, so that snapshots keep their bits as `i64`.
+    /// All ids of a dataset. VTK has no unsigned ones, so snapshots keep their bits as `i64`.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
@@ -137,19 +137,19 @@ impl Content {
         let rows = self.numbers(path)?;
         let known = [Element::U64, Element::I64].map(RowType::single);
         if !known.contains(&rows.row) {
-            return self.told(path, Err("its rows are no ids".into()));
+            return self.converted(path, Err("its rows are no ids".into()));
         }
         self.values(path, &rows)
     }
 
-    /// How many partitions the points of a grid stand in.
+    /// Number of partitions of a grid's points.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`], also if they cannot be those of its points.
     pub fn partitions(&self, grid: &str) -> Result<u64, OutputError> {
         let points = self.numbers(&format!("{grid}/Points"))?.rows;
         let what = format!("{grid}/NumberOfPoints");
-        self.told(&what, self.gate.partitions(grid, points))
+        self.converted(&what, self.gate.partitions(grid, points))
     }
 
     /// A text dataset.
@@ -157,7 +157,7 @@ impl Content {
     /// # Errors
     /// [`OutputError::Hdf5`], [`OutputError::Damaged`] if it is no UTF-8.
     pub fn text(&self, path: &str) -> Result<String, OutputError> {
-        let bytes = self.told(path, self.gate.text(path))?;
+        let bytes = self.converted(path, self.gate.text(path))?;
         let text = String::from_utf8(bytes);
         text.map_err(|e| OutputError::damaged(&self.path, format!("{path}: {e}")))
     }
@@ -168,7 +168,7 @@ impl Content {
     /// [`OutputError::Hdf5`].
     pub fn note(&self, group: &str, name: &str) -> Result<String, OutputError> {
         let note = self.gate.group(group).and_then(|g| gate::note(&g, name));
-        self.told(name, note)
+        self.converted(name, note)
     }
 
     /// A text attribute of a group, if there is one.
@@ -178,7 +178,7 @@ impl Content {
     pub fn note_if_any(&self, group: &str, name: &str) -> Result<Option<String>, OutputError> {
         let note = self.gate.group(group);
         let note = note.and_then(|g| gate::note_if_any(&g, name));
-        self.told(name, note)
+        self.converted(name, note)
     }
 
     /// A number attached to a group.
@@ -187,23 +187,23 @@ impl Content {
     /// [`OutputError::Hdf5`].
     pub fn number<T: Number>(&self, group: &str, name: &str) -> Result<T, OutputError> {
         let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
-        self.told(name, number)
+        self.converted(name, number)
     }
 
-    fn numbers(&self, path: &str) -> Result<Found, OutputError> {
-        self.told(path, self.gate.numbers(path))
+    fn numbers(&self, path: &str) -> Result<Located, OutputError> {
+        self.converted(path, self.gate.numbers(path))
     }
 
     /// All values of a dataset whose rows are single values as wide as `T`.
-    fn values<T: bytemuck::Pod>(&self, path: &str, rows: &Found) -> Result<Vec<T>, OutputError> {
+    fn values<T: bytemuck::Pod>(&self, path: &str, rows: &Located) -> Result<Vec<T>, OutputError> {
         let block = Block::even(rows.rows, 0, 1);
         let mut values = vec![T::zeroed(); block.count];
         let read = rows.read(block, bytemuck::cast_slice_mut(&mut values));
-        self.told(path, read)?;
+        self.converted(path, read)?;
         Ok(values)
     }
 
-    fn told<T>(&self, what: &str, result: hdf5::Result<T>) -> Result<T, OutputError> {
+    fn converted<T>(&self, what: &str, result: hdf5::Result<T>) -> Result<T, OutputError> {
         result.map_err(|error| OutputError::Hdf5 {
             action: format!("read {what} from"),
             path: self.path.clone(),

@@ -1,9 +1,9 @@
-//! Long rows go to the disk by direct I/O, past the system's page cache, while the next ones are gathered.
+//! Direct I/O of long rows, past the system's page cache, while the next ones are gathered.
 //!
 //! The cache would keep a second copy of them, and a first use of one of its pages may take longer than the disk
-//! does. Here a thread writes pieces that begin and end where blocks of the file system do; what is left at both
-//! ends of some rows shares its block with others and goes through the cache, which is coherent on one machine. So
-//! it is for file systems of one machine that are known to keep that order, and for none that several mount.
+//! does. Here a thread writes pieces that begin and end at blocks of the file system. The rest at both ends of
+//! some rows shares its block with others and goes through the cache, which is coherent on one machine. So only
+//! file systems of one machine that are known to keep that order are written so, and none that several mount.
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -25,34 +25,34 @@ pub struct Direct {
     /// Bytes of a block.
     block: u64,
     worker: Option<Worker>,
-    /// Where the next bytes go.
-    place: u64,
-    /// What is being filled, and how far.
+    /// Offset of the next bytes.
+    offset: u64,
+    /// The piece being filled, and its bytes so far.
     filling: Option<(Piece, usize)>,
 }
 
 /// The thread that writes.
 struct Worker {
     loads: Sender<Load>,
-    /// What can be filled again, or what went wrong.
+    /// Pieces that can be filled again, or errors.
     done: Receiver<io::Result<Piece>>,
     thread: JoinHandle<()>,
-    /// How many pieces it has.
+    /// Number of pieces that it has.
     given: usize,
 }
 
-/// Bytes that belong somewhere in the file.
+/// Bytes and their offset in the file.
 struct Load {
     piece: Piece,
     count: usize,
-    place: u64,
+    offset: u64,
 }
 
 /// Pieces in turn: one is written while the other is filled.
 const PIECES: usize = 2;
 
 impl Direct {
-    /// Of a file that is there; `None` where its file system does not take this.
+    /// Of an existing file; `None` if its file system does not support this.
     pub fn of(path: &Path) -> Option<Self> {
         let block = block_of(path)?;
         Some(Self {
@@ -60,31 +60,31 @@ impl Direct {
             cached: File::options().write(true).open(path).ok()?,
             block,
             worker: None,
-            place: 0,
+            offset: 0,
             filling: None,
         })
     }
 
-    /// Whether it takes rows of so many bytes.
+    /// Returns true for rows that are long enough (bytes).
     pub fn takes(bytes: usize) -> bool {
         bytes >= LEAST
     }
 
-    /// Begins to write bytes at a place of the file, well if they go on where the last ones ended.
+    /// Begins to write bytes at an offset of the file, best where the last ones ended.
     ///
     /// # Errors
-    /// Those of the system, also of what was begun before.
-    pub fn write(&mut self, place: u64, mut bytes: &[u8]) -> io::Result<()> {
-        if place != self.place {
+    /// Those of the system, also of earlier writes.
+    pub fn write(&mut self, offset: u64, mut bytes: &[u8]) -> io::Result<()> {
+        if offset != self.offset {
             self.end()?;
-            self.place = place;
+            self.offset = offset;
         }
         while !bytes.is_empty() {
-            let before = self.place.next_multiple_of(self.block) - self.place;
+            let before = self.offset.next_multiple_of(self.block) - self.offset;
             if self.filling.is_none() && before > 0 {
-                let (first, rest) = bytes.split_at(bytes.len().min(offset(before)));
-                self.cached.write_all_at(first, self.place)?;
-                self.place += first.len() as u64;
+                let (first, rest) = bytes.split_at(bytes.len().min(in_memory(before)));
+                self.cached.write_all_at(first, self.offset)?;
+                self.offset += first.len() as u64;
                 bytes = rest;
                 continue;
             }
@@ -95,7 +95,7 @@ impl Direct {
             let (next, rest) = bytes.split_at(bytes.len().min(PIECE - filled));
             let to = filled + next.len();
             piece.bytes()[filled..to].copy_from_slice(next);
-            self.place += next.len() as u64;
+            self.offset += next.len() as u64;
             bytes = rest;
             if to == PIECE {
                 self.give(piece, to);
@@ -106,17 +106,17 @@ impl Direct {
         Ok(())
     }
 
-    /// Other bytes follow, or none.
+    /// Ends a sequence of consecutive bytes.
     fn end(&mut self) -> io::Result<()> {
         let Some((mut piece, filled)) = self.filling.take() else {
             return Ok(());
         };
-        let left = offset(self.place % self.block).min(filled);
+        let left = in_memory(self.offset % self.block).min(filled);
         let whole = filled - left;
-        let tail = self.place - left as u64;
+        let tail = self.offset - left as u64;
         self.cached
             .write_all_at(&piece.bytes()[whole..filled], tail)?;
-        self.place = tail;
+        self.offset = tail;
         self.give(piece, whole);
         Ok(())
     }
@@ -126,13 +126,13 @@ impl Direct {
         self.worker.get_or_insert_with(|| Worker::new(past))
     }
 
-    /// Gives the thread what has been filled up to the next place.
+    /// Gives the thread the bytes filled so far.
     fn give(&mut self, piece: Piece, count: usize) {
-        let place = self.place - count as u64;
+        let offset = self.offset - count as u64;
         self.worker().give(Load {
             piece,
             count,
-            place,
+            offset,
         });
     }
 
@@ -148,7 +148,7 @@ impl Direct {
 }
 
 impl Drop for Direct {
-    /// Nothing is written any more when this is gone.
+    /// Waits for the thread.
     fn drop(&mut self) {
         let _ = self.finish();
     }
@@ -163,10 +163,10 @@ impl Worker {
             for Load {
                 mut piece,
                 count,
-                place,
+                offset,
             } in to_write
             {
-                let written = past.write_all_at(&piece.bytes()[..count], place);
+                let written = past.write_all_at(&piece.bytes()[..count], offset);
                 if back.send(written.map(|()| piece)).is_err() {
                     break;
                 }
@@ -180,7 +180,7 @@ impl Worker {
         }
     }
 
-    /// One that can be filled.
+    /// A piece that can be filled.
     fn piece(&mut self) -> io::Result<Piece> {
         if self.given < PIECES {
             return Ok(Piece::take());
@@ -211,7 +211,7 @@ fn lost() -> io::Error {
     io::Error::other("the thread that writes is gone")
 }
 
-fn offset(bytes: u64) -> usize {
+fn in_memory(bytes: u64) -> usize {
     usize::try_from(bytes).expect("rows fit memory")
 }
 
@@ -230,15 +230,15 @@ pub fn open_for_reading(path: &Path) -> io::Result<File> {
     File::open(path)
 }
 
-/// So that what is opened is read and written past the cache.
+/// Makes an opened file bypass the cache.
 fn past_cache(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(target_os = "linux")]
     std::os::unix::fs::OpenOptionsExt::custom_flags(options, libc::O_DIRECT);
     options
 }
 
-/// Bytes of the blocks of a file system, in which pages of the cache end too; `None` if it is none of those that
-/// are known to take direct writes beside cached ones.
+/// Bytes of the blocks of a file system, which are whole pages of the cache; `None` if it is not known to take
+/// direct writes beside cached ones.
 #[cfg(target_os = "linux")]
 fn block_of(path: &Path) -> Option<u64> {
     use std::mem::MaybeUninit;
@@ -246,7 +246,7 @@ fn block_of(path: &Path) -> Option<u64> {
 
     let path = std::ffi::CString::new(path.as_os_str().as_bytes()).ok()?;
     let mut about = MaybeUninit::<libc::statfs>::uninit();
-    // SAFETY: the path ends with a zero, and the place takes what is told.
+    // SAFETY: the path ends with a zero, and `about` has the type of the result.
     let about = unsafe {
         (libc::statfs(path.as_ptr(), about.as_mut_ptr()) == 0).then(|| about.assume_init())
     }?;
@@ -283,15 +283,15 @@ mod tests {
         let Some((path, mut direct)) = new_file(folder.path()) else {
             return;
         };
-        let places = [0, 5, 4090, 70_000, 70_001 + PIECE, 4 * PIECE + 3];
-        let whole: Vec<u8> = (0..places[5])
+        let offsets = [0, 5, 4090, 70_000, 70_001 + PIECE, 4 * PIECE + 3];
+        let whole: Vec<u8> = (0..offsets[5])
             .map(|k| (k * 7 + k / 251).to_le_bytes()[0])
             .collect();
-        for pair in places.windows(2) {
-            let mut place = pair[0] as u64;
-            for part in whole[pair[0]..pair[1]].chunks(70_003) {
-                direct.write(place, part).unwrap();
-                place += part.len() as u64;
+        for pair in offsets.windows(2) {
+            let mut offset = pair[0] as u64;
+            for chunk in whole[pair[0]..pair[1]].chunks(70_003) {
+                direct.write(offset, chunk).unwrap();
+                offset += chunk.len() as u64;
             }
         }
         direct.finish().unwrap();
@@ -305,9 +305,9 @@ mod tests {
             return;
         };
         // Beyond the longest file.
-        let place = u64::MAX / 2 - PIECE as u64;
+        let offset = u64::MAX / 2 - PIECE as u64;
         let rows = vec![0; 4 * PIECE];
-        let written = direct.write(place, &rows);
+        let written = direct.write(offset, &rows);
         assert!(written.and_then(|()| direct.finish()).is_err());
     }
 }

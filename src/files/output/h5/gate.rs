@@ -1,10 +1,10 @@
-//! The one gate through which bytes of a file come in that anybody may have made.
+//! The one gate through which bytes of untrusted files come in.
 //!
 //! HDF5 fills a buffer with as much as a file declares, follows links into other files and devices,
-//! and unpacks what is compressed. So nothing is read but here, and the gate lets pass what
+//! and unpacks compressed data. So nothing is read but here, and the gate accepts what
 //! [`super::Writer`] makes and nothing else: objects behind hard links, datasets that lie in one
 //! piece within the file, values of this machine's own types (so that nothing is converted), and
-//! attributes of one value. Type, shape and place are compared with the length of the file before
+//! attributes of one value. Type, shape and offset are compared with the length of the file before
 //! memory is taken.
 
 use std::ffi::{CString, c_int};
@@ -40,8 +40,8 @@ pub(super) struct Gate {
 }
 
 impl Gate {
-    /// Opens a file, by this process alone or by all ranks of `comm` together: rank 0 looks whether
-    /// it is there and how long it is, and all hear.
+    /// Opens a file, by this process alone or by all ranks of `comm` together: rank 0 checks that it
+    /// exists and gives its length to all.
     ///
     /// # Errors
     /// [`OutputError::Io`] or [`OutputError::Hdf5`], the same on every rank.
@@ -66,7 +66,7 @@ impl Gate {
         })
     }
 
-    /// Whether there is a link of this name in the first group.
+    /// Returns true if there is a link of this name in the root group.
     pub fn has(&self, name: &str) -> bool {
         self.file.link_exists(name)
     }
@@ -74,7 +74,7 @@ impl Gate {
     /// A group.
     pub fn group(&self, path: &str) -> hdf5::Result<Group> {
         let mut group = self.file.group("/")?;
-        for name in parts(path) {
+        for name in names(path) {
             group = own_link(&group, name)?.group(name)?;
         }
         Ok(group)
@@ -95,7 +95,7 @@ impl Gate {
     }
 
     /// A dataset of numbers: of rank 1, or of rank 2 with the components of a field.
-    pub fn numbers(&self, path: &str) -> hdf5::Result<Found> {
+    pub fn numbers(&self, path: &str) -> hdf5::Result<Located> {
         let dataset = self.dataset(path)?;
         let (rows, components) = match dataset.shape()[..] {
             [rows] => (rows, 1),
@@ -109,19 +109,19 @@ impl Gate {
         self.within(dataset, row, rows)
     }
 
-    /// How many partitions a grid has, if they are those of so many points. Rows stand in one array
+    /// Number of partitions of a grid, if they are those of this many points. Rows are in one array
     /// all the same, so that readers of rows need not know which partition a row is in.
     pub fn partitions(&self, grid: &str, points: u64) -> hdf5::Result<u64> {
-        let found = self.numbers(&format!("{grid}/NumberOfPoints"))?;
-        if found.row != RowType::single(Element::I64) {
+        let dataset = self.numbers(&format!("{grid}/NumberOfPoints"))?;
+        if dataset.row != RowType::single(Element::I64) {
             return Err("its rows are not of one i64 each".into());
         }
-        partitions::check_count(found.rows)?;
-        let mut sizes = vec![0_i64; found.count()];
-        let all = Block::even(found.rows, 0, 1);
-        found.read(all, bytemuck::cast_slice_mut(&mut sizes))?;
+        partitions::check_count(dataset.rows)?;
+        let mut sizes = vec![0_i64; dataset.count()];
+        let all = Block::even(dataset.rows, 0, 1);
+        dataset.read(all, bytemuck::cast_slice_mut(&mut sizes))?;
         partitions::check(&sizes, points)?;
-        Ok(found.rows)
+        Ok(dataset.rows)
     }
 
     /// All of a dataset of one text, without the zeros at its end.
@@ -140,8 +140,8 @@ impl Gate {
     /// A dataset behind hard links that lies in one piece. A virtual one opens other files when it
     /// is asked for its shape, so this comes first.
     fn dataset(&self, path: &str) -> hdf5::Result<Dataset> {
-        let (place, name) = path.rsplit_once('/').unwrap_or(("", path));
-        let group = self.group(place)?;
+        let (parent, name) = path.rsplit_once('/').unwrap_or(("", path));
+        let group = self.group(parent)?;
         let dataset = own_link(&group, name)?.dataset(name)?;
         let made = dataset.create_plist()?;
         // SAFETY: the property list is open and is one of a dataset's creation.
@@ -154,7 +154,7 @@ impl Gate {
         });
         let plain = match layout {
             H5D_layout_t::H5D_CONTIGUOUS => filters == 0 && files == 0,
-            // What has no rows is written so.
+            // Datasets without rows are written so.
             H5D_layout_t::H5D_CHUNKED => filters == 0 && dataset.size() == 0,
             _ => false,
         };
@@ -169,7 +169,7 @@ impl Gate {
     }
 
     /// The rows, if they lie within the file.
-    fn within(&self, dataset: Dataset, row: RowType, rows: usize) -> hdf5::Result<Found> {
+    fn within(&self, dataset: Dataset, row: RowType, rows: usize) -> hdf5::Result<Located> {
         let rows = rows as u64;
         let length = rows.checked_mul(row.bytes() as u64);
         let end = length.and_then(|length| match dataset.offset() {
@@ -180,18 +180,18 @@ impl Gate {
         if end.is_none_or(|end| end > self.bytes) {
             return Err(format!("{rows} rows are more than the file holds").into());
         }
-        Ok(Found { dataset, row, rows })
+        Ok(Located { dataset, row, rows })
     }
 }
 
 /// A dataset that lies within its file.
-pub(super) struct Found {
+pub(super) struct Located {
     dataset: Dataset,
     pub row: RowType,
     pub rows: u64,
 }
 
-impl Found {
+impl Located {
     /// Number of rows, which fit an address since they fit the file.
     pub fn count(&self) -> usize {
         usize::try_from(self.rows).unwrap_or(usize::MAX)
@@ -268,11 +268,11 @@ pub(super) fn number<T: Number>(object: &Location, name: &str) -> hdf5::Result<T
     Ok(value)
 }
 
-fn parts(path: &str) -> impl Iterator<Item = &str> {
-    path.split('/').filter(|part| !part.is_empty())
+fn names(path: &str) -> impl Iterator<Item = &str> {
+    path.split('/').filter(|name| !name.is_empty())
 }
 
-/// The group, if a hard link of it has this name: others lead to places of any name and into
+/// The group, if a hard link of it has this name: other links lead to objects of any name and into
 /// other files.
 fn own_link<'a>(group: &'a Group, name: &str) -> hdf5::Result<&'a Group> {
     #[allow(deprecated, reason = "the call that all versions of HDF5 have")]
@@ -283,10 +283,10 @@ fn own_link<'a>(group: &'a Group, name: &str) -> hdf5::Result<&'a Group> {
     let mut link = H5L_info1_t::default();
     // SAFETY: the group is open, the name ends with a zero, and the record is the call's own.
     call(|| unsafe { H5Lget_info1(group.id(), text.as_ptr(), &raw mut link, H5P_DEFAULT) })?;
-    // SAFETY: the kind is a C enumeration and comes first; a file may hold kinds that the Rust one
+    // SAFETY: the type is a C enumeration and comes first; a file may hold types that the Rust one
     // does not name.
-    let kind = unsafe { (&raw const link).cast::<c_int>().read() };
-    if kind == HARD {
+    let link_type = unsafe { (&raw const link).cast::<c_int>().read() };
+    if link_type == HARD {
         Ok(group)
     } else {
         Err(format!("{name} is a link to another place").into())

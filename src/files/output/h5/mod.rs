@@ -43,7 +43,7 @@ pub enum Element {
     U8,
     /// `f32`.
     F32,
-    /// UTF-8 text of so many bytes, padded with zeros.
+    /// UTF-8 text of this many bytes, padded with zeros.
     Text(usize),
 }
 
@@ -172,8 +172,8 @@ impl RowType {
     }
 }
 
-/// How to open a file: all ranks of `comm` together with collective metadata, or this process
-/// alone. Without locks, which some file systems refuse and which nobody needs here: a file has
+/// Access properties of a file: for all ranks of `comm` together with collective metadata, or for this
+/// process alone. Without locks, which some file systems refuse and which are not needed here: a file has
 /// its final name only when it is whole.
 ///
 /// # Panics
@@ -195,7 +195,7 @@ fn access(comm: Option<&Comm>) -> FileBuilder {
     builder
 }
 
-/// What HDF5 says, with advice where file systems without locks make it refuse.
+/// The message of HDF5, with advice where file systems without locks make it refuse.
 fn explain(error: &hdf5::Error) -> String {
     let text = error.to_string();
     if text.contains("unable to lock") {

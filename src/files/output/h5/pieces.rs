@@ -18,33 +18,33 @@ unsafe impl bytemuck::Zeroable for Block {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Block {}
 
-/// Memory of [`PIECE`] bytes, at the place that direct I/O asks for.
+/// Memory of [`PIECE`] bytes, aligned as direct I/O needs it.
 pub struct Piece(Box<[Block]>);
 
-/// Those that nobody uses, kept for the next file: a first use of memory costs more than a copy.
+/// Unused pieces, kept for the next file: a first use of memory costs more than a copy.
 static KEPT: Mutex<Vec<Piece>> = Mutex::new(Vec::new());
 
 impl Piece {
-    /// One that was kept, or a new one.
+    /// A kept piece, or a new one.
     pub fn take() -> Self {
         let kept = KEPT.lock().ok().and_then(|mut kept| kept.pop());
         kept.unwrap_or_else(|| Self(bytemuck::zeroed_slice_box(PIECE / MOST_BLOCK)))
     }
 
-    /// Keeps it.
+    /// Keeps it for the next use.
     pub fn keep(self) {
         if let Ok(mut kept) = KEPT.lock() {
             kept.push(self);
         }
     }
 
-    /// What so many bytes take in whole blocks of a file, as direct reads want it.
+    /// Its beginning, enough for `bytes` in whole blocks of a file, as direct reads need it.
     pub fn blocks(&mut self, bytes: usize) -> &mut [u8] {
         let whole = bytes.next_multiple_of(MOST_BLOCK).min(PIECE);
         &mut self.bytes()[..whole]
     }
 
-    /// What it holds.
+    /// All its bytes.
     pub fn bytes(&mut self) -> &mut [u8] {
         bytemuck::cast_slice_mut(&mut self.0)
     }

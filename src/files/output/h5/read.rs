@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use crate::output::{Block, OutputError};
 
 use super::explain;
-use super::gate::{self, Found, Gate};
+use super::gate::{self, Gate, Located};
 
 /// Group of the grid.
 const GRID: &str = "/VTKHDF";
 
-/// Attribute of `/whipple` that says which part of the model a snapshot holds, if not all of it.
-pub const PART: &str = "part";
+/// Attribute of `/whipple` that describes the portion of the model in a snapshot, if it is not all of it.
+pub const PORTION: &str = "part";
 
-/// Why a snapshot could not be read.
+/// An error of reading a snapshot.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The file is missing, is not HDF5 or is damaged.
@@ -29,9 +29,9 @@ pub enum ReadError {
     Layout {
         /// The file.
         path: PathBuf,
-        /// The object or attribute that was looked for.
+        /// The missing object or attribute.
         what: String,
-        /// What HDF5 says.
+        /// The message of HDF5.
         reason: String,
     },
 }
@@ -63,7 +63,7 @@ impl SnapshotFile {
         }
         snapshot.particles = points.count();
         let partitions = snapshot.gate.partitions(GRID, points.rows);
-        snapshot.told(&format!("{GRID}/NumberOfPoints"), partitions)?;
+        snapshot.converted(&format!("{GRID}/NumberOfPoints"), partitions)?;
         Ok(snapshot)
     }
 
@@ -105,7 +105,7 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the file has no particle data.
     pub fn names(&self) -> Result<Vec<String>, ReadError> {
         let name = "/VTKHDF/PointData";
-        self.told(name, self.gate.members(name))
+        self.converted(name, self.gate.members(name))
     }
 
     /// Numbers for each particle in a field: 1, 3 (x, y, z) or 6 (xx, yy, zz, xy, yz, xz).
@@ -161,7 +161,7 @@ impl SnapshotFile {
     pub fn field_attribute(&self, field: &str, name: &str) -> Result<String, ReadError> {
         let path = field_path(field);
         let rows = self.rows(&path)?;
-        self.told(&format!("attribute {name} of {path}"), rows.note(name))
+        self.converted(&format!("attribute {name} of {path}"), rows.note(name))
     }
 
     /// A string attribute of a group, such as `title` of `/whipple`.
@@ -170,20 +170,20 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the group or the attribute is missing or no string.
     pub fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
         let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
-        self.told(&format!("attribute {name} of {group}"), text)
+        self.converted(&format!("attribute {name} of {group}"), text)
     }
 
-    /// Which part of the model it holds, if it says that it does not hold all particles.
+    /// The portion of the model that it holds, if it does not hold all particles.
     ///
     /// # Errors
     /// [`ReadError::Layout`] if that cannot be read.
-    pub fn part(&self) -> Result<Option<String>, ReadError> {
+    pub fn portion(&self) -> Result<Option<String>, ReadError> {
         let group = "/whipple";
-        let part = self
+        let portion = self
             .gate
             .group(group)
-            .and_then(|g| gate::note_if_any(&g, PART));
-        self.told(&format!("attribute {PART} of {group}"), part)
+            .and_then(|g| gate::note_if_any(&g, PORTION));
+        self.converted(&format!("attribute {PORTION} of {group}"), portion)
     }
 
     /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.
@@ -192,7 +192,7 @@ impl SnapshotFile {
     /// [`ReadError::Layout`] if the group or the attribute is missing or not a number.
     pub fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
         let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
-        self.told(&format!("attribute {name} of {group}"), number)
+        self.converted(&format!("attribute {name} of {group}"), number)
     }
 
     /// Some rows of a dataset, value after value.
@@ -203,15 +203,15 @@ impl SnapshotFile {
             first: rows.start as u64,
             count: rows.len(),
         };
-        let bytes = self.told(name, found.bytes(block))?;
+        let bytes = self.converted(name, found.bytes(block))?;
         Ok(found.row.element.reals(&bytes))
     }
 
-    fn rows(&self, name: &str) -> Result<Found, ReadError> {
-        self.told(name, self.gate.numbers(name))
+    fn rows(&self, name: &str) -> Result<Located, ReadError> {
+        self.converted(name, self.gate.numbers(name))
     }
 
-    fn told<T>(&self, what: &str, result: hdf5::Result<T>) -> Result<T, ReadError> {
+    fn converted<T>(&self, what: &str, result: hdf5::Result<T>) -> Result<T, ReadError> {
         result.map_err(|e| self.layout(what, &explain(&e)))
     }
 

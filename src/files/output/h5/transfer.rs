@@ -1,9 +1,9 @@
 //! The raw calls that move rows between memory and file.
 //!
-//! Each rank moves its own contiguous block by an independent call. Collective ones are not to
-//! be trusted with results: in Open MPI 4.1 a full disk makes `MPI_File_write_at_all` return
-//! success on every rank (its parts `dynamic` and `dynamic_gen2`), or only one rank leaves it and
-//! the job hangs (`vulcan`, `two_phase`, ROMIO). An independent call tells the rank that made it.
+//! Each rank moves its own contiguous block by an independent call. Collective ones do not report
+//! errors reliably: in Open MPI 4.1 a full disk makes `MPI_File_write_at_all` return success on every
+//! rank (its components `dynamic` and `dynamic_gen2`), or only one rank leaves it and the job hangs
+//! (`vulcan`, `two_phase`, ROMIO). An independent call reports to the rank that made it.
 
 use hdf5::{Dataset, Dataspace};
 use hdf5_sys::h5::herr_t;
@@ -17,12 +17,12 @@ use comm::pieces;
 
 use super::RowType;
 
-/// Largest piece of one call: MPI counts bytes in `i32` in places.
+/// Largest piece of one call: some calls of MPI count bytes in `i32`.
 const PIECE: usize = 1 << 30;
 
-/// Makes one call under the library's lock and keeps its return code.
-pub(super) fn call(code: impl FnOnce() -> herr_t) -> hdf5::Result<()> {
-    hdf5::sync::sync(|| hdf5::h5check(code()).map(|_| ()))
+/// Makes one call under the library's lock and checks its return code.
+pub(super) fn call(function: impl FnOnce() -> herr_t) -> hdf5::Result<()> {
+    hdf5::sync::sync(|| hdf5::h5check(function()).map(|_| ()))
 }
 
 /// Writes a block of a dataset's rows.
@@ -77,18 +77,18 @@ fn in_pieces(
     block: Block,
     mut piece: impl FnMut(hid_t, hid_t, usize) -> hdf5::Result<()>,
 ) -> hdf5::Result<()> {
-    for part in parts(row, block) {
-        let memory = Dataspace::try_new(row.shape(part.count))?;
+    for segment in segments(row, block) {
+        let memory = Dataspace::try_new(row.shape(segment.count))?;
         let file = dataset.space()?;
-        select_rows(&file, row, part.first, part.count)?;
-        piece(memory.id(), file.id(), part.start)?;
+        select_rows(&file, row, segment.first, segment.count)?;
+        piece(memory.id(), file.id(), segment.start)?;
     }
     Ok(())
 }
 
-/// Rows of one call.
+/// The rows of one call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Part {
+struct Segment {
     /// The first one in the file.
     first: u64,
     count: u64,
@@ -97,9 +97,9 @@ struct Part {
 }
 
 /// The calls that a block takes.
-fn parts(row: RowType, block: Block) -> impl Iterator<Item = Part> {
+fn segments(row: RowType, block: Block) -> impl Iterator<Item = Segment> {
     let most = (PIECE / row.bytes()).max(1);
-    pieces(block.count, most).map(move |rows| Part {
+    pieces(block.count, most).map(move |rows| Segment {
         first: block.first + rows.start as u64,
         count: rows.len() as u64,
         start: rows.start * row.bytes(),
@@ -109,7 +109,7 @@ fn parts(row: RowType, block: Block) -> impl Iterator<Item = Part> {
 fn select_rows(space: &Dataspace, row: RowType, first: u64, count: u64) -> hdf5::Result<()> {
     let start = [first, 0];
     let counts = [count, row.components as u64];
-    // SAFETY: the space has at most two dimensions, and so many numbers are given.
+    // SAFETY: the space has at most two dimensions, and as many numbers are given.
     call(|| unsafe {
         H5Sselect_hyperslab(
             space.id(),
@@ -139,18 +139,18 @@ mod tests {
             count: (1 << 31) + 5,
         };
         let (mut first, mut start) = (block.first, 0);
-        for part in parts(tensor, block) {
-            assert_eq!((part.first, part.start), (first, start));
-            let bytes = part.count * tensor.bytes() as u64;
+        for segment in segments(tensor, block) {
+            assert_eq!((segment.first, segment.start), (first, start));
+            let bytes = segment.count * tensor.bytes() as u64;
             assert!(bytes > 0 && bytes <= PIECE as u64);
-            first += part.count;
+            first += segment.count;
             start += usize::try_from(bytes).unwrap();
         }
         assert_eq!(first, block.first + block.count as u64);
         assert_eq!(start, block.count * tensor.bytes());
-        assert_eq!(parts(tensor, Block { count: 0, ..block }).count(), 0);
+        assert_eq!(segments(tensor, Block { count: 0, ..block }).count(), 0);
         // A row that is longer than a piece goes by itself.
         let long = RowType::single(Element::Text(3 << 30));
-        assert_eq!(parts(long, Block::even(2, 0, 1)).count(), 2);
+        assert_eq!(segments(long, Block::even(2, 0, 1)).count(), 2);
     }
 }

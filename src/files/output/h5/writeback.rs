@@ -1,20 +1,19 @@
-//! Has the system write to the disk what stands in its memory, while the next rows are gathered. Otherwise
+//! Starts the system's writing of cached pages to the disk while the next rows are gathered. Otherwise
 //! Linux begins when some tenth of all memory is full, or when the file is closed.
 
 use std::fs::File;
 use std::path::Path;
 
-/// A file whose parts begin their way to the disk as soon as they are written.
+/// A file whose rows go to the disk as soon as they are written.
 pub struct Writeback(Option<File>);
 
 impl Writeback {
-    /// Of a file that is there. Nothing happens without it: all of the file is brought to the disk at its end
-    /// anyway.
+    /// Of an existing file. Without it nothing happens: the file is synced at its end anyway.
     pub fn of(path: &Path) -> Self {
         Self(File::options().write(true).open(path).ok())
     }
 
-    /// Begins with all that is not on its way yet.
+    /// Starts writing all dirty pages.
     pub fn begin(&self) {
         #[cfg(target_os = "linux")]
         if let Some(file) = &self.0 {

@@ -20,17 +20,17 @@ use super::transfer::{call, write_rows};
 use super::writeback::Writeback;
 use super::{Element, RowType, access, explain};
 
-/// Makes some rows of a block: which of them, and room for as many.
+/// Fills a buffer with a range of a block's rows.
 pub type Fill<'a> = dyn Fn(Range<usize>, &mut [u8]) + 'a;
 
-/// A new file. Every method is collective and gives all ranks the same verdict; after an error
+/// A new file. Every method is collective and gives all ranks the same result; after an error
 /// the file is of no use and must be dropped.
 pub struct Writer<'a> {
     comm: &'a Comm,
     path: PathBuf,
     /// Present until it is closed.
     file: Option<File>,
-    /// Takes long rows, where the file system knows how.
+    /// Writes long rows, where the file system supports it.
     direct: Option<Direct>,
     writeback: Writeback,
 }
@@ -44,7 +44,7 @@ impl<'a> Writer<'a> {
         Self::create_aligned(comm, path, None)
     }
 
-    /// As [`Self::create`], where arrays begin at multiples of so many bytes, if that is wanted.
+    /// As [`Self::create`], where arrays begin at multiples of `alignment` bytes, if that is given.
     /// Collective.
     ///
     /// # Errors
@@ -60,7 +60,7 @@ impl<'a> Writer<'a> {
         })?;
         let mut builder = access(Some(comm));
         if let Some(bytes) = alignment {
-            // What is shorter stands between.
+            // Shorter objects lie between.
             builder.with_fapl(|list| list.alignment(bytes, bytes));
         }
         let created = builder.create(path);
@@ -108,26 +108,26 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// The two attributes by which VTK knows its files.
+    /// Writes the two attributes by which VTK recognises its files.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
     pub fn vtk_header(
         &self,
         group: &str,
-        kind: &str,
+        grid_type: &str,
         version: [i64; 2],
     ) -> Result<(), OutputError> {
         self.attempt("the VTK header", || {
             let parent = self.object(group)?;
             let attribute = parent.new_attr::<i64>().shape(2).create("Version")?;
             attribute.write_raw(&version)?;
-            let datatype = TypeDescriptor::FixedAscii(kind.len());
+            let datatype = TypeDescriptor::FixedAscii(grid_type.len());
             let attribute = parent
                 .new_attr_builder()
                 .empty_as(&datatype)
                 .create("Type")?;
-            let text = FixedAscii::<32>::from_ascii(kind).map_err(|e| e.to_string())?;
+            let text = FixedAscii::<32>::from_ascii(grid_type).map_err(|e| e.to_string())?;
             attribute.as_writer().write_scalar(&text)
         })
     }
@@ -144,13 +144,13 @@ impl<'a> Writer<'a> {
         bytes: &[u8],
     ) -> Result<(), OutputError> {
         let dataset = self.agreed_dataset(name, row, block.total)?;
-        let place = self.direct_place(&dataset, row, block);
-        let written = self.write(name, (&dataset, row, place), block, bytes);
+        let offset = self.direct_offset(&dataset, row, block);
+        let written = self.write(name, &dataset, row, offset, block, bytes);
         agree(self.comm, written)
     }
 
-    /// As [`Self::rows`], of rows that are made when they are wanted: `fill` is given which of the
-    /// block, and room for them.
+    /// As [`Self::rows`], of rows that `fill` makes when they are written: it takes a range of the
+    /// block and a buffer for its rows.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`] or [`OutputError::Io`].
@@ -162,41 +162,43 @@ impl<'a> Writer<'a> {
         fill: &Fill,
     ) -> Result<(), OutputError> {
         let dataset = self.agreed_dataset(name, row, block.total)?;
-        let place = self.direct_place(&dataset, row, block);
+        let offset = self.direct_offset(&dataset, row, block);
         let mut piece = Piece::take();
-        let mut parts = pieces(block.count, PIECE / row.bytes());
-        let written = parts.try_for_each(|rows| {
+        let mut ranges = pieces(block.count, PIECE / row.bytes());
+        let written = ranges.try_for_each(|rows| {
             let bytes = &mut piece.bytes()[..rows.len() * row.bytes()];
             fill(rows.clone(), bytes);
-            let part = Block {
+            let chunk = Block {
                 first: block.first + rows.start as u64,
                 count: rows.len(),
                 ..block
             };
-            let place = place.map(|place| place + (rows.start * row.bytes()) as u64);
-            self.write(name, (&dataset, row, place), part, bytes)
+            let offset = offset.map(|offset| offset + (rows.start * row.bytes()) as u64);
+            self.write(name, &dataset, row, offset, chunk, bytes)
         });
         piece.keep();
         agree(self.comm, written)
     }
 
-    /// Where in the file this rank's rows of a dataset stand, if they go there past the cache.
-    fn direct_place(&self, dataset: &Dataset, row: RowType, block: Block) -> Option<u64> {
+    /// Offset in the file of this rank's rows of a dataset, if they go there past the cache.
+    fn direct_offset(&self, dataset: &Dataset, row: RowType, block: Block) -> Option<u64> {
         let takes = self.direct.is_some() && Direct::takes(block.count * row.bytes());
         let begin = takes.then(|| dataset.offset())??;
         Some(begin + block.first * row.bytes() as u64)
     }
 
-    /// Writes some of this rank's rows of a dataset, to a place in the file or as HDF5 does.
+    /// Writes some of this rank's rows of a dataset, to an offset in the file or as HDF5 does.
     fn write(
         &mut self,
         name: &str,
-        (dataset, row, place): (&Dataset, RowType, Option<u64>),
+        dataset: &Dataset,
+        row: RowType,
+        offset: Option<u64>,
         block: Block,
         bytes: &[u8],
     ) -> Result<(), OutputError> {
-        if let (Some(direct), Some(place)) = (&mut self.direct, place) {
-            let written = direct.write(place, bytes);
+        if let (Some(direct), Some(offset)) = (&mut self.direct, offset) {
+            let written = direct.write(offset, bytes);
             return written.map_err(OutputError::io("write", &self.path));
         }
         let written = write_rows(dataset, row, block, bytes);
@@ -206,7 +208,7 @@ impl<'a> Writer<'a> {
         written.map_err(|e| self.refusal(name, &e))
     }
 
-    /// Writes a dataset of a few numbers that every rank knows.
+    /// Writes a dataset of a few numbers that all ranks have.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
@@ -221,7 +223,7 @@ impl<'a> Writer<'a> {
         self.rows(name, RowType::single(element), block, bytes)
     }
 
-    /// Writes a dataset of one text of any length that every rank knows.
+    /// Writes a dataset of one text of any length that all ranks have.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
@@ -232,7 +234,7 @@ impl<'a> Writer<'a> {
         self.rows(name, row, block, &bytes[..block.count * bytes.len()])
     }
 
-    /// Brings the file to the disk and closes it.
+    /// Syncs the file and closes it.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`] or [`OutputError::Io`].
@@ -281,7 +283,7 @@ impl<'a> Writer<'a> {
             .create(name)
     }
 
-    /// A dataset or group as the place of attributes.
+    /// A dataset or group, which holds attributes.
     fn object(&self, name: &str) -> hdf5::Result<Location> {
         let file = self.file()?;
         match file.group(name) {
@@ -298,7 +300,7 @@ impl<'a> Writer<'a> {
         agree(self.comm, task().map_err(|e| self.refusal(what, &e)))
     }
 
-    /// HDF5 only says that a write failed; trying one oneself may tell why.
+    /// The error of a failed write. HDF5 gives no cause; a write without it may show one.
     fn refusal(&self, what: &str, error: &hdf5::Error) -> OutputError {
         let mut reason = explain(error);
         let probe = self
@@ -317,9 +319,9 @@ impl<'a> Writer<'a> {
 }
 
 impl Drop for Writer<'_> {
-    /// Gives back the room of a file that met an error, but leaves it open on all ranks. HDF5 may
-    /// not be able to write its records, and then crashes, at once or when MPI ends and with it
-    /// HDF5: so nobody closes the file, and the job must end without the end of MPI, see
+    /// Frees the disk space of a file after an error, but leaves it open on all ranks. HDF5 may
+    /// not be able to write its records, and then crashes, at once or when MPI and with it HDF5 is
+    /// finalised: so no rank closes the file, and the job must end without finalising MPI, see
     /// [`abandoned`].
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
@@ -337,11 +339,11 @@ impl Drop for Writer<'_> {
     }
 }
 
-/// Whether a file of several ranks was left open after an error.
+/// Set when a file of several ranks was left open after an error.
 static ABANDONED: AtomicBool = AtomicBool::new(false);
 
-/// Whether this process has a file that it can neither write nor close: MPI must not be finalised,
-/// since HDF5 would try to.
+/// Returns true if this process has a file that it can neither write nor close: MPI must not be
+/// finalised, since HDF5 would try to.
 #[must_use]
 pub fn abandoned() -> bool {
     ABANDONED.load(Ordering::Relaxed)
@@ -350,14 +352,14 @@ pub fn abandoned() -> bool {
 /// Bytes that HDF5's own records of one of our files need at most.
 const RECORDS: usize = 256 << 10;
 
-/// Where those bytes are kept.
+/// The file that reserves those bytes.
 fn room(path: &Path) -> PathBuf {
     files::partial(path)
 }
 
-/// Makes an empty file, and beside it one that keeps room for HDF5's records until all data are
-/// written. A full disk then shows with the data, whose errors each rank sees and which can be
-/// voted; an error in the records would leave ranks in a collective call for ever.
+/// Makes an empty file, and beside it one that reserves space for HDF5's records until all data are
+/// written. A full disk then shows with the data, whose errors each rank sees and ranks can agree
+/// on; an error in the records would leave ranks in a collective call for ever.
 fn keep_room(path: &Path) -> std::io::Result<()> {
     std::fs::File::create(path)?;
     let mut file = std::fs::File::create(room(path))?;

@@ -6,7 +6,7 @@ use numerics::counter::split_mix;
 
 /// All ranks in groups that follow each other: ⌊√P⌋ of them, as even as whole numbers allow.
 ///
-/// Each rank has a gate in each group, the one rank there that takes in what it has for the group.
+/// Each rank has a gate in each group: the one rank there that receives its rows for the group.
 /// Ranks of one group have different gates. Those of different groups are shifted against each
 /// other as if by chance: in a model whose ids run along another axis than its slabs, ranks a
 /// group apart have rows for the same group, and without a shift all of them the same gate.
@@ -17,7 +17,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Of so many ranks. Up to three are one group.
+    /// Groups of `ranks`. Up to three are one group.
     pub fn of(ranks: usize) -> Self {
         Self {
             ranks,
@@ -25,7 +25,7 @@ impl Groups {
         }
     }
 
-    /// How many there are.
+    /// Number of groups.
     pub fn count(self) -> usize {
         self.count
     }
@@ -44,10 +44,10 @@ impl Groups {
     /// The gates of a rank, by group. It is its own in its group.
     pub fn gates(self, rank: usize) -> impl Iterator<Item = usize> {
         let own = self.group(rank);
-        let place = rank - self.members(own).start;
+        let index = rank - self.members(own).start;
         (0..self.count).map(move |group| {
             let members = self.members(group);
-            members.start + (place + shift(own, group, members.len())) % members.len()
+            members.start + (index + shift(own, group, members.len())) % members.len()
         })
     }
 
@@ -55,18 +55,17 @@ impl Groups {
     pub fn guests(self, rank: usize) -> impl Iterator<Item = usize> {
         let own = self.group(rank);
         let members = self.members(own);
-        let place = rank - members.start;
+        let index = rank - members.start;
         (0..self.count).flat_map(move |group| {
             let shift = shift(group, own, members.len());
-            let first = (place + members.len() - shift) % members.len();
+            let first = (index + members.len() - shift) % members.len();
             let others = self.members(group);
             (others.start + first..others.end).step_by(members.len())
         })
     }
 }
 
-/// How far the gates of ranks of a group are shifted in another of so many ranks; not at all in
-/// their own.
+/// Shift of the gates of ranks of a group in another of `ranks` ranks; none in their own.
 fn shift(from: usize, to: usize, ranks: usize) -> usize {
     if from == to {
         return 0;
@@ -98,7 +97,7 @@ mod tests {
         }
     }
 
-    /// Gates and guests know each other; no rank has many of either, and both hops together take no
+    /// Gates and guests know each other; no rank has many of either, and both transfers together take no
     /// more than 2√P messages.
     #[test]
     fn gates_are_known_to_both_sides_and_have_even_loads() {

@@ -1,38 +1,38 @@
-//! The snapshots that a case asks for: the usual ones, and those of schedules of their own.
+//! The snapshots of a case: the default ones, and those of schedules of their own.
 
-use super::form::{Form, Part};
+use super::format::{Portion, SnapshotFormat};
 use crate::output::quantity::{Quantity, quantities_of};
 use crate::output::{OutputError, Schedule};
 use model::{Case, Precision, SnapshotSchedule};
 use particles::ParticleStore;
 
-/// Snapshots that are written again and again.
+/// A series of snapshots.
 #[derive(Debug)]
 pub struct Plan {
-    /// Of the schedule; the usual snapshots have none.
+    /// Name of the schedule; the default snapshots have none.
     pub name: Option<String>,
     schedule: Schedule,
     quantities: Vec<Quantity>,
     precision: Precision,
-    part: Part,
+    portion: Portion,
 }
 
 impl Plan {
-    /// All of a case: the usual snapshots first.
+    /// All of a case: the default snapshots first.
     ///
     /// # Errors
     /// [`OutputError::UnknownField`].
     pub fn all(case: &Case, particles: &ParticleStore) -> Result<Vec<Self>, OutputError> {
-        let usual = Self {
+        let default = Self {
             name: None,
             schedule: Schedule::new(case.output.snapshot_every),
             quantities: quantities_of(case, &case.output.fields, particles)?,
             precision: Precision::Double,
-            part: Part::default(),
+            portion: Portion::default(),
         };
         let more = case.output.snapshots.iter();
         let more = more.map(|schedule| Self::of(schedule, case, particles));
-        std::iter::once(Ok(usual)).chain(more).collect()
+        std::iter::once(Ok(default)).chain(more).collect()
     }
 
     fn of(
@@ -45,31 +45,31 @@ impl Plan {
             schedule: Schedule::new(schedule.every),
             quantities: quantities_of(case, &schedule.fields, particles)?,
             precision: schedule.precision,
-            part: Part::of(schedule),
+            portion: Portion::of(schedule),
         })
     }
 
-    /// Whether a step from time `before` to time `now` (s) reaches or passes a due time.
+    /// Returns true if a step from time `before` to time `now` (s) reaches or passes a due time.
     #[must_use]
     pub fn is_due(&self, before: f64, now: f64) -> bool {
         self.schedule.is_due(before, now)
     }
 
-    /// Whether it tells the fragment of each particle.
+    /// Returns true if it holds the fragment of each particle.
     #[must_use]
     pub fn shows_fragments(&self) -> bool {
         let shows = |quantity: &Quantity| matches!(quantity, Quantity::Fragment);
         self.quantities.iter().any(shows)
     }
 
-    /// What each holds and how.
+    /// Contents and format of each snapshot.
     #[must_use]
-    pub fn form(&self) -> Form<'_> {
-        Form {
+    pub fn format(&self) -> SnapshotFormat<'_> {
+        SnapshotFormat {
             precision: self.precision,
-            part: &self.part,
+            portion: &self.portion,
             schedule: self.name.as_deref(),
-            ..Form::of(&self.quantities)
+            ..SnapshotFormat::of(&self.quantities)
         }
     }
 }

@@ -1,15 +1,16 @@
-//! Numbers of a snapshot, with as many digits as it asks for.
+//! Numbers of a snapshot in its precision.
 
 use crate::output::h5::{Element, Fill, PIECE, Piece, RowType, Writer};
 use crate::output::{Block, OutputError};
 use comm::pieces;
 use model::Precision;
 
-/// Writes rows of numbers as they are, or those that are no whole numbers with 32 bits each.
+/// Writes rows of numbers as they are, or reals with 32 bits each.
 pub(super) fn write_values(
     file: &mut Writer,
     path: &str,
-    (row, precision): (RowType, Precision),
+    row: RowType,
+    precision: Precision,
     block: Block,
     fill: &Fill,
 ) -> Result<(), OutputError> {
@@ -22,20 +23,20 @@ pub(super) fn write_values(
     };
     file.rows_of(path, short, block, &|rows, bytes| {
         let mut piece = Piece::take();
-        for part in pieces(rows.len(), PIECE / row.bytes()) {
-            let wide = &mut piece.bytes()[..part.len() * row.bytes()];
-            fill(rows.start + part.start..rows.start + part.end, wide);
-            let place = part.start * short.bytes()..part.end * short.bytes();
-            shorten(wide, &mut bytes[place]);
+        for chunk in pieces(rows.len(), PIECE / row.bytes()) {
+            let wide = &mut piece.bytes()[..chunk.len() * row.bytes()];
+            fill(rows.start + chunk.start..rows.start + chunk.end, wide);
+            let target = chunk.start * short.bytes()..chunk.end * short.bytes();
+            shorten(wide, &mut bytes[target]);
         }
         piece.keep();
     })
 }
 
-/// Values of 64 bits with 32: the nearest, infinite beyond the range of these. What is no number
-/// has the same bits on any machine.
+/// Rounds values of 64 bits to the nearest of 32, infinite beyond their range. NaN has the same bits on
+/// any machine.
 fn shorten(bytes: &[u8], short: &mut [u8]) {
-    #[allow(clippy::cast_possible_truncation, reason = "digits are to go")]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding is wanted")]
     let shortened = |value: f64| {
         if value.is_nan() {
             f32::NAN
@@ -44,9 +45,9 @@ fn shorten(bytes: &[u8], short: &mut [u8]) {
         }
     };
     let values = bytes.chunks_exact(size_of::<f64>());
-    for (place, value) in short.chunks_exact_mut(size_of::<f32>()).zip(values) {
+    for (target, value) in short.chunks_exact_mut(size_of::<f32>()).zip(values) {
         let value = shortened(bytemuck::pod_read_unaligned(value));
-        place.copy_from_slice(&value.to_ne_bytes());
+        target.copy_from_slice(&value.to_ne_bytes());
     }
 }
 

@@ -1,4 +1,4 @@
-//! What is measured between steps goes into tables.
+//! Tables of measurements between steps.
 
 use super::{Driver, census};
 use crate::output::{OutputError, Schedule, on_root};
@@ -7,7 +7,7 @@ use engine::step::measurements;
 use model::Cadence;
 
 impl Driver<'_> {
-    /// What gauges and measures tell whose turn it is after a step that began at time `before` (s).
+    /// Writes the gauges and measures that are due after a step that began at time `before` (s).
     pub(super) fn write_measures(&mut self, comm: &Comm, before: f64) -> Result<(), OutputError> {
         self.write_gauges(comm, before)?;
         self.write_findings(comm, before)
@@ -48,7 +48,7 @@ impl Driver<'_> {
         })
     }
 
-    /// Who has passed witness planes since the last time.
+    /// Writes the particles that have passed witness planes since the last time.
     pub(super) fn write_crossings(&mut self, comm: &Comm) -> Result<(), OutputError> {
         let crossings = measurements::join_crossings(&mut self.simulation, comm);
         if crossings.is_empty() {
@@ -60,14 +60,13 @@ impl Driver<'_> {
         })
     }
 
-    /// Labels of fragments of this rank's particles; `tells` writes their tables. Collective.
+    /// Labels of fragments of this rank's particles; writes their tables if `write`. Collective.
     pub(super) fn find_fragments(
         &mut self,
         comm: &Comm,
-        tells: bool,
+        write: bool,
     ) -> Result<Vec<u64>, OutputError> {
-        let tables = self.tables.as_mut();
-        let told = tells.then_some((self.folder, tables));
-        census::take(comm, &mut self.simulation, told)
+        let tables = write.then_some((self.folder, self.tables.as_mut()));
+        census::take(comm, &mut self.simulation, tables)
     }
 }

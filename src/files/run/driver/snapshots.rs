@@ -1,4 +1,4 @@
-//! The snapshots of a run: the usual ones, and those of schedules of their own.
+//! The snapshots of a run: the default ones, and those of schedules of their own.
 
 use std::fs;
 use std::time::Instant;
@@ -10,26 +10,26 @@ use engine::step::contact_stress;
 
 impl Driver<'_> {
     /// Writes the snapshots that are due after a `step` between two times (s), or all of them, and the
-    /// tables of fragments if it `tells`.
+    /// tables of fragments if `census_due`.
     pub(super) fn write_snapshots(
         &mut self,
         comm: &Comm,
         step: Option<[f64; 2]>,
-        tells: bool,
+        census_due: bool,
     ) -> Result<(), OutputError> {
         let begun = Instant::now();
         let is_due = |plan: &snapshot::Plan| step.is_none_or(|[a, b]| plan.is_due(a, b));
         let due: Vec<bool> = self.plans.iter().map(is_due).collect();
         contact_stress::measure_in(&mut self.simulation, comm);
         let mut chosen = self.plans.iter().zip(&due).filter(|(_, due)| **due);
-        let labels = if tells || chosen.any(|(plan, _)| plan.shows_fragments()) {
-            self.find_fragments(comm, tells)?
+        let labels = if census_due || chosen.any(|(plan, _)| plan.shows_fragments()) {
+            self.find_fragments(comm, census_due)?
         } else {
             Vec::new()
         };
         for (k, _) in due.iter().enumerate().filter(|(_, due)| **due) {
             self.write_snapshot(comm, k, &labels)?;
-            // Parts say little of how long a checkpoint takes.
+            // Snapshots of portions say little about the time of a checkpoint.
             if k == 0 {
                 self.watch.wrote_snapshot(begun.elapsed());
             }
@@ -61,8 +61,8 @@ impl Driver<'_> {
                 wall_seconds: self.start.elapsed().as_secs_f64(),
                 fragments: labels,
             };
-            let form = plan.form();
-            snapshot::write(comm, &path, &simulation.particles, &meta, &form, rows)
+            let format = plan.format();
+            snapshot::write(comm, &path, &simulation.particles, &meta, &format, rows)
         })?;
         let state = &self.simulation.state;
         on_root(comm, || {

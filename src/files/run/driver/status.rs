@@ -24,19 +24,19 @@ impl Driver<'_> {
         })
     }
 
-    /// Writes that the run goes on. Rank 0's alone.
-    pub(super) fn tell_running(&mut self) -> Result<(), OutputError> {
+    /// Writes the status of a running run. Rank 0's alone.
+    pub(super) fn write_running(&mut self) -> Result<(), OutputError> {
         let begun = Instant::now();
         let written = self.write_status(Phase::Running, None);
         self.watched.wrote(begun);
         written
     }
 
-    /// Writes it now and then, for those who watch the run.
+    /// Writes that status if it is due, for watching the run.
     pub(super) fn renew_status(&mut self, comm: &Comm) {
         if comm.is_root() && self.watched.is_due() {
-            // A folder that takes no files any more is told of by what has to be written.
-            let _ = self.tell_running();
+            // If the folder takes no files any more, required output fails and reports it.
+            let _ = self.write_running();
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How a process speaks: in lines of text, in JSON objects, or hardly at all.
+//! Verbosity and format of a process's messages.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -8,9 +8,9 @@ use serde_json::{Map, Value, json};
 
 use model::readable::is_printable;
 
-/// The form of what a run prints.
+/// Format of a run's messages.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum LogForm {
+pub enum LogFormat {
     /// Lines of text.
     #[default]
     Text,
@@ -18,28 +18,28 @@ pub enum LogForm {
     Json,
 }
 
-/// How all lines of this process are told.
+/// Verbosity and format of all messages of a process.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Voice {
+pub struct Verbosity {
     /// Warnings and errors alone.
     pub quiet: bool,
     /// As JSON objects.
     pub json: bool,
 }
 
-/// That of this process, as bits.
-static VOICE: AtomicU8 = AtomicU8::new(0);
+/// The verbosity of this process, as bits.
+static VERBOSITY: AtomicU8 = AtomicU8::new(0);
 
-impl Voice {
-    /// Lets this process speak so from now on.
+impl Verbosity {
+    /// Sets the verbosity of this process.
     pub fn begin(self) {
         let bits = u8::from(self.quiet) + 2 * u8::from(self.json);
-        VOICE.store(bits, Ordering::Relaxed);
+        VERBOSITY.store(bits, Ordering::Relaxed);
     }
 
-    /// That of this process.
+    /// The verbosity of this process.
     pub fn now() -> Self {
-        let bits = VOICE.load(Ordering::Relaxed);
+        let bits = VERBOSITY.load(Ordering::Relaxed);
         Self {
             quiet: bits & 1 != 0,
             json: bits & 2 != 0,
@@ -60,11 +60,11 @@ pub fn document(value: &Value) -> String {
     plain(&format!("{value:#}"))
 }
 
-/// JSON that does no more to a terminal than to show itself.
+/// JSON without characters that control a terminal.
 fn plain(json: &str) -> String {
     let mut text = String::with_capacity(json.len());
     for c in json.chars() {
-        // What else is not printable stands in strings alone, where it can be escaped.
+        // Other unprintable characters are in strings alone, where they can be escaped.
         if is_printable(c) || c == '\n' {
             text.push(c);
         } else {

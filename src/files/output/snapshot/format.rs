@@ -1,32 +1,32 @@
-//! What a snapshot holds and how.
+//! Contents and format of a snapshot.
 
 use crate::output::partitions::PARTITION_ROWS;
 use crate::output::quantity::Quantity;
 use model::{Case, Precision, Region, SnapshotSchedule};
 use particles::ParticleStore;
 
-/// What a snapshot holds and how.
+/// Contents and format of a snapshot.
 #[derive(Debug, Clone, Copy)]
-pub struct Form<'a> {
-    /// What it tells of each particle.
+pub struct SnapshotFormat<'a> {
+    /// Quantities of each particle.
     pub quantities: &'a [Quantity],
-    /// Which particles it tells of.
-    pub part: &'a Part,
-    /// Of positions and of fields that are no whole numbers.
+    /// The particles that it holds.
+    pub portion: &'a Portion,
+    /// Precision of positions and real fields.
     pub precision: Precision,
-    /// The schedule that it belongs to, if it is none of the usual snapshots.
+    /// The schedule that it belongs to, if it is no default snapshot.
     pub schedule: Option<&'a str>,
     /// Rows of a partition.
     pub partition_rows: u64,
 }
 
-impl<'a> Form<'a> {
+impl<'a> SnapshotFormat<'a> {
     /// Some quantities of all particles.
     #[must_use]
     pub fn of(quantities: &'a [Quantity]) -> Self {
         Self {
             quantities,
-            part: Part::ALL,
+            portion: Portion::ALL,
             precision: Precision::Double,
             schedule: None,
             partition_rows: PARTITION_ROWS,
@@ -34,29 +34,29 @@ impl<'a> Form<'a> {
     }
 }
 
-/// Which particles a snapshot tells of.
+/// The particles that a snapshot holds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
-    /// Of these bodies; of all if absent.
+pub struct Portion {
+    /// Particles of these bodies; of all if absent.
     pub bodies: Option<Vec<usize>>,
-    /// In this region.
+    /// Particles in this region.
     pub region: Region,
 }
 
-impl Default for Part {
+impl Default for Portion {
     fn default() -> Self {
         Self::ALL.clone()
     }
 }
 
-impl Part {
+impl Portion {
     /// The whole model.
     const ALL: &Self = &Self {
         bodies: None,
         region: Region::OPEN,
     };
 
-    /// That of a schedule.
+    /// The portion of a schedule.
     #[must_use]
     pub fn of(schedule: &SnapshotSchedule) -> Self {
         Self {
@@ -65,14 +65,14 @@ impl Part {
         }
     }
 
-    /// Whether it is the whole model.
+    /// Returns true if it is the whole model.
     #[must_use]
     pub fn is_all(&self) -> bool {
         self == Self::ALL
     }
 
-    /// The owned particles that belong to it; nothing where all do. A place that is no number is
-    /// beyond no side, so that runaways are seen.
+    /// The owned particles that belong to it; `None` if all do. A NaN position is beyond no side, so that
+    /// runaways are seen.
     #[must_use]
     pub(super) fn chosen(&self, particles: &ParticleStore) -> Option<Vec<u32>> {
         let is_in = |&i: &u32| {
@@ -86,7 +86,7 @@ impl Part {
         (!self.is_all()).then(|| (0..owned).filter(is_in).collect())
     }
 
-    /// What it is, in words.
+    /// Its description in words.
     #[must_use]
     pub(super) fn text(&self, case: &Case) -> String {
         let mut words = Vec::new();
@@ -126,13 +126,13 @@ mod tests {
             particles.body[i] = body;
             particles.position[i] = [x, 0.0, 0.0];
         }
-        let mut part = Part::default();
-        assert!(part.is_all() && part.chosen(&particles).is_none());
-        part.bodies = Some(vec![1]);
-        assert_eq!(part.chosen(&particles), Some(vec![1, 2]));
-        part.region.below[0] = 0.9;
-        assert_eq!(part.chosen(&particles), Some(vec![2]));
-        part.bodies = None;
-        assert_eq!(part.chosen(&particles), Some(vec![0, 2]));
+        let mut portion = Portion::default();
+        assert!(portion.is_all() && portion.chosen(&particles).is_none());
+        portion.bodies = Some(vec![1]);
+        assert_eq!(portion.chosen(&particles), Some(vec![1, 2]));
+        portion.region.below[0] = 0.9;
+        assert_eq!(portion.chosen(&particles), Some(vec![2]));
+        portion.bodies = None;
+        assert_eq!(portion.chosen(&particles), Some(vec![0, 2]));
     }
 }
