@@ -37,10 +37,10 @@ pub fn plan(
         let wanted = steps.map(|steps| steps * row.time.all + writing);
         let job = Job::new(row, machine, wanted);
         write_text(file, &job.text(file, [path, &run], &args.set))?;
-        say(&job.told(file));
+        say(&job.summary(file));
     }
-    args.form
-        .tell(|| table::document((source, machine), &rows, &files));
+    args.format
+        .print(|| table::document((source, machine), &rows, &files));
     Ok(())
 }
 
@@ -71,7 +71,8 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
     Ok(all)
 }
 
-/// How ranks of so many nodes share them, all threads but one that divides their cores, or what was asked for.
+/// The ways in which ranks share that many nodes: all threads but one that divide their cores, or
+/// the requested one.
 fn sharings(
     args: &PlanArgs,
     machine: &Machine,

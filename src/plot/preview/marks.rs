@@ -36,9 +36,9 @@ fn across(
     let [right, up] = panel.axes();
     let (frame, view) = (&panel.frame, &panel.view);
     let within = |span: [f64; 2]| span[0] <= value && value <= span[1];
-    let mut place = [0.0; 3];
-    place[axis] = value;
-    let (x, y) = panel.at(&place);
+    let mut point = [0.0; 3];
+    point[axis] = value;
+    let (x, y) = panel.at(&point);
     let ends = if axis == right && within(view.x) {
         [(x, frame.top), (x, frame.bottom())]
     } else if axis == up && within(view.y) {
@@ -111,8 +111,8 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
     let longest = LONGEST * panel.frame.width.min(panel.frame.height);
     let [right, up] = panel.axes();
     let normal = panel.plane.axis.index();
-    for (_, place, v) in all {
-        let at = panel.at(place);
+    for (_, point, v) in all {
+        let at = panel.at(point);
         let share = |a: usize| pixels(v[a] / fastest) * longest;
         let (dx, dy) = (share(right), -share(up));
         if dx.hypot(dy) < 0.05 * longest {
