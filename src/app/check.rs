@@ -9,7 +9,6 @@ use super::output_format::OutputFormat;
 use super::plan::duration;
 use super::plot::out;
 use comm::Comm;
-use plot::{self, PlotError};
 use document::document;
 use files::input::{self, InputError};
 use files::output::{snapshot, unit_of_model};
@@ -19,6 +18,7 @@ use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, warn};
 use model::readable::{short, shown};
 use model::{Body, Case, MeasureKind, Quantity, cube};
+use plot::{self, PlotError};
 use populate;
 
 /// Check a case without running it: particles by body, memory, expected steps
@@ -93,7 +93,7 @@ pub fn run(args: &CheckArgs) -> u8 {
     }
     let ranks = args.ranks as usize;
     if !args.format.is_json() {
-        print_report((&case, &approaches), ranks);
+        print_report(&case, &approaches, ranks);
     }
     let drawn = args
         .picture
@@ -102,7 +102,7 @@ pub fn run(args: &CheckArgs) -> u8 {
     match drawn {
         Ok(()) => {
             args.format
-                .print(|| document((&case, &approaches), ranks, &warnings));
+                .print(|| document(&case, &approaches, ranks, &warnings));
             0
         }
         Err(error) => {
@@ -200,7 +200,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
 }
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-fn print_report((case, approaches): (&Case, &[Approach]), ranks: usize) {
+fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
     say(&format!("{} ({}-D): sound", case.title, case.dimension));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
     let total: u64 = counts.sum();
@@ -224,7 +224,7 @@ fn print_report((case, approaches): (&Case, &[Approach]), ranks: usize) {
         say(&format!("  about {} steps to {end}", short(steps)));
     }
     let machine = machine(case, approaches);
-    print_costs(case, (total as f64, steps), ranks, &machine);
+    print_costs(case, total as f64, steps, ranks, &machine);
 }
 
 /// Bodies that are going to meet, with their names.
@@ -247,23 +247,18 @@ fn machine(case: &Case, approaches: &[Approach]) -> Machine {
 }
 
 /// Seconds of so many steps with their files on a machine.
-fn wall_time(case: &Case, ranks: usize, machine: &Machine, (steps, files): (f64, &Files)) -> f64 {
+fn wall_time(case: &Case, ranks: usize, machine: &Machine, steps: f64, files: &Files) -> f64 {
     let stepping = steps * plan::rough_step(case, ranks, machine);
     stepping + files.written() / machine.disk_bandwidth
 }
 
 /// Prints the time that the run takes on an ordinary machine, and its disk space.
-fn print_costs(
-    case: &Case,
-    (particles, steps): (f64, Option<f64>),
-    ranks: usize,
-    machine: &Machine,
-) {
+fn print_costs(case: &Case, particles: f64, steps: Option<f64>, ranks: usize, machine: &Machine) {
     let Ok(files) = Files::new(case, particles, steps.unwrap_or(0.0)) else {
         return;
     };
     if let Some(steps) = steps {
-        let wall = duration(wall_time(case, ranks, machine, (steps, &files)));
+        let wall = duration(wall_time(case, ranks, machine, steps, &files));
         let plural = if ranks == 1 { "" } else { "s" };
         let name = &machine.name;
         say(&format!(

@@ -6,11 +6,11 @@ use serde_json::json;
 
 use super::output_format::{OutputFormat, wrote};
 use super::which::Several;
-use desk::export::{self, ExportError, Format, Destination, Wish};
-use plot::{Wanted, bodies, parse_quantity};
+use desk::export::{self, Destination, ExportError, Format, Wish};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
 use model::readable::one_line;
+use plot::{Wanted, bodies, parse_quantity};
 
 /// Write snapshots in the formats of other programs
 ///
@@ -78,7 +78,7 @@ pub fn run(args: &ExportArgs) -> u8 {
     args.format.begin();
     match write(args) {
         Ok(bodies) => {
-            args.format.on_written(|| json!({ "types": bodies }));
+            args.format.print(|| json!({ "types": bodies }));
             0
         }
         Err(error) => {

@@ -1,6 +1,6 @@
 //! `whipple fragments`: the fragments of a run's snapshots, by the code of the run itself.
 
-mod particles;
+mod loaded;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -10,16 +10,16 @@ use serde_json::{Value, json};
 use super::output_format::{self, OutputFormat, wrote};
 use super::results::ResultsError;
 use super::which::Which;
-use plot::{PlotError, choose, snapshots};
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
 use files::input;
 use files::output::fragments::FragmentTable;
 use files::output::{OutputError, RunFolder, Sheet, write_atomically};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, seconds, warn};
-use particles::Loaded;
+use loaded::Loaded;
 use model::readable::{one_line, shown, shown_vector};
 use model::{FragmentOptions, Include};
+use plot::{PlotError, choose, snapshots};
 
 /// Tell the fragments of a run: how many, how heavy, how large, how fast
 ///

@@ -10,7 +10,9 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::output_format::OutputFormat;
-use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running, status_and_presence};
+use super::results::{
+    GRID, POINT_DATA, Results, ResultsError, component_names, running, status_and_presence,
+};
 use files::output::checkpoint::{self, FIELDS};
 use files::output::h5::read::PART;
 use files::output::h5::{Array, Content, Element, RowType};

@@ -9,12 +9,12 @@ use std::path::PathBuf;
 
 use super::output_format::OutputFormat;
 use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
-use plot::{PlotError, Quantity};
 use desk::sweep::{self, Shot, SweepError, Values};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{say, warn};
 use laws::Law;
 use model::readable::one_line;
+use plot::{PlotError, Quantity};
 
 /// Print and plot ballistic limit equations, craters and hole diameters
 ///
@@ -149,7 +149,9 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
     if let Some(path) = output.plot.clone().or(own) {
         draw(&law, &speeds, &shots, &path, output.width)?;
     }
-    output.format.print(|| table::document(&law, &speeds, &shots));
+    output
+        .format
+        .print(|| table::document(&law, &speeds, &shots));
     Ok(())
 }
 

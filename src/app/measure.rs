@@ -7,7 +7,6 @@ use super::output_format::{self, OutputFormat, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use plot::{PlotError, Wanted, choose, snapshots};
 use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
 use files::input::{self, InputError};
 use files::output::h5::Content;
@@ -17,6 +16,7 @@ use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, seconds, warn};
 use model::readable::{one_line, shown};
 use model::{Case, Measure, MeasureKind};
+use plot::{PlotError, Wanted, choose, snapshots};
 
 /// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
 ///
@@ -108,7 +108,13 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let mut text = String::new();
     for path in &paths {
         let loaded = Loaded::read(path, &args.set)?;
-        let measured = findings(loaded.time, &mut remembered, None, &loaded.particles(), &comm);
+        let measured = findings(
+            loaded.time,
+            &mut remembered,
+            None,
+            &loaded.particles(),
+            &comm,
+        );
         text = report(&loaded, loaded.case.measure.measures.iter().zip(&measured));
         evaluated.push((loaded.case, loaded.time, measured));
     }
@@ -121,10 +127,13 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
         write_atomically(path, &table)?;
         wrote(path, "");
     }
-    args.format.evaluate(|| {
+    args.format.print(|| {
         let sheet = Sheet::parse(&String::from_utf8_lossy(&table));
         let mut document = output_format::table(&sheet.expect("a table that was made here"));
-        document["title"] = evaluated.last().map(|(case, ..)| case.title.as_str()).into();
+        document["title"] = evaluated
+            .last()
+            .map(|(case, ..)| case.title.as_str())
+            .into();
         document
     });
     Ok(text)
@@ -144,7 +153,10 @@ fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), Measure
     let available = snapshots(folder.path())?;
     let first = choose(&available, &Wanted::Indices(vec![0]))?.pop();
     if args.all {
-        return Ok((first, available.into_iter().map(|available| available.1).collect()));
+        return Ok((
+            first,
+            available.into_iter().map(|available| available.1).collect(),
+        ));
     }
     Ok((first, choose(&available, &args.which.wanted()?)?))
 }
@@ -282,7 +294,10 @@ fn keep<T: Copy>(values: &mut Vec<T>, frozen: &[f64]) {
 }
 
 /// The figures of a snapshot, a line for each.
-fn report<'a>(loaded: &Loaded, findings: impl Iterator<Item = (&'a Measure, &'a Findings)>) -> String {
+fn report<'a>(
+    loaded: &Loaded,
+    findings: impl Iterator<Item = (&'a Measure, &'a Findings)>,
+) -> String {
     use std::fmt::Write as _;
     let title = one_line(&loaded.case.title);
     let mut text = format!("{title} at {}\n", seconds(loaded.time));

@@ -14,7 +14,6 @@ use clap::builder::PossibleValuesParser;
 
 use super::output_format::OutputFormat;
 use super::plot::out::{check_picture, save_text, write_chart};
-use plot::PlotError;
 use files::output::read_small;
 use files::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
 use files::preflight::{Costs, memory};
@@ -22,6 +21,7 @@ use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::say::{counted, say, warn};
 use model::Case;
 use model::readable::short;
+use plot::PlotError;
 use source::Source;
 pub use table::duration;
 
@@ -202,12 +202,12 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
-        let particles = (source.particles.positions.len(), args.per_core);
-        let chart = chart::chart(&title, particles, &rows, &weak);
+        let particles = source.particles.positions.len();
+        let chart = chart::chart(&title, particles, args.per_core, &rows, &weak);
         write_chart(&chart, args.width, path).map_err(with_prefix)?;
     }
     args.format
-        .print(|| table::document((&source, &machine), &rows, &files));
+        .print(|| table::document(&source, &machine, &rows, &files));
     Ok(())
 }
 

@@ -13,11 +13,11 @@ use serde_json::json;
 
 use super::output_format::OutputFormat;
 use super::which::Several;
+use movie::MovieArgs;
+use out::{target, write_chart};
 use plot::{
     Along, History, Pictures, PlotError, ProfileRequest, Profiles, Request, Source, Wanted,
 };
-use movie::MovieArgs;
-use out::{target, write_chart};
 use scene::SceneArgs;
 
 /// Draw sections, views and radiographs of snapshots, profiles along a line, energies or tables as SVG or

@@ -5,8 +5,8 @@ use std::process::{Command, Stdio};
 
 use serde_json::json;
 
-use super::output_format::{OutputFormat, wrote};
 use super::fragments::{FragmentsArgs, evaluate as evaluate_fragments};
+use super::output_format::{OutputFormat, wrote};
 use super::results::{Results, ResultsError};
 use super::which::Which;
 use desk::report;
@@ -90,12 +90,12 @@ fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
         [a, b] => report::compare(&folder(a)?, &folder(b)?),
         runs => {
             let folder = folder(&runs[0])?;
-            let asked = report::Asked {
+            let options = report::PageOptions {
                 particles: args.particles as usize,
                 frames: args.frames.map(|frames| frames as usize),
                 fragments: fragments(&folder),
             };
-            report::render(&folder, &asked)
+            report::render(&folder, &options)
         }
     };
     write_atomically(&path, page.as_bytes())?;

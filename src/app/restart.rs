@@ -72,10 +72,10 @@ pub fn run(args: &RestartArgs) -> u8 {
             Err(error) => return refused(error),
         };
         let listed = find(comm, &named).map_err(|error| refusal(&error));
-        let loaded = listed.and_then(|listed| {
+        let loaded = listed.and_then(|(paths, passed_over)| {
             // The store of particles has work for them as soon as a checkpoint is read.
             launch.start_threads(args.common.threads);
-            read(comm, &args.from, named, listed)
+            read(comm, &args.from, named, paths, passed_over)
         });
         let ended = loaded.and_then(|loaded| resume(launch, args, loaded, lock.as_ref()));
         ended.unwrap_or_else(|message| warn(comm, &message))
@@ -187,7 +187,8 @@ fn read(
     comm: &Comm,
     from: &Path,
     named: Named,
-    (paths, mut passed_over): (Vec<OsString>, Vec<PassedOver>),
+    paths: Vec<OsString>,
+    mut passed_over: Vec<PassedOver>,
 ) -> Result<LoadedCheckpoint, String> {
     for path in paths {
         let checkpoint = PathBuf::from(&path);
@@ -258,7 +259,10 @@ fn resume(
     let mut warnings = settled.warnings.clone();
     warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
     warnings.extend(loaded.warnings());
-    let passed = loaded.passed_over.iter().map(|passed| (&passed.path).into());
+    let passed = loaded
+        .passed_over
+        .iter()
+        .map(|passed| (&passed.path).into());
     let origin = Origin {
         passed_over: passed.collect(),
         checkpoint: loaded.checkpoint,

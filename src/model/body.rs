@@ -5,7 +5,8 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Primitive, Grading, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3, cube,
+    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid, Vec3,
+    cube,
 };
 
 /// The arrangement of particles.

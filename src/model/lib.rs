@@ -57,7 +57,7 @@ pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
 pub use shape::Shape;
 pub use sizes::Sizes;
-pub use solid::{Primitive, Placement, Polygon, Solid, rotation};
+pub use solid::{Placement, Polygon, Primitive, Solid, rotation};
 pub use surface::{
     Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
     SurfaceShape, closest_on_triangle, triangulate,

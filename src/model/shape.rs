@@ -1,7 +1,7 @@
 //! The initial shape of a body.
 
 use super::axis::{Axis, SymmetryPlane};
-use super::{Primitive, Placement, Polygon, Solid, Vec3};
+use super::{Placement, Polygon, Primitive, Solid, Vec3};
 
 /// The geometry of a body, in its final place (m).
 ///
@@ -80,8 +80,9 @@ impl Shape {
     /// If a cylinder has no radius or no length.
     #[must_use]
     pub fn solid(&self, dimension: usize) -> Solid {
-        let ball =
-            |centre: &Vec3, radius: f64| Solid::Primitive(Primitive::Ball(radius), Placement::at(*centre));
+        let ball = |centre: &Vec3, radius: f64| {
+            Solid::Primitive(Primitive::Ball(radius), Placement::at(*centre))
+        };
         match self {
             Self::Box { lower, upper } => {
                 let mut half = (upper - lower) * 0.5;

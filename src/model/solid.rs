@@ -6,16 +6,16 @@
 //! distance, and it changes no faster than the point moves.
 
 mod ellipsoid;
-mod primitive;
 mod polygon;
+mod primitive;
 mod support;
 mod volume;
 
 #[cfg(test)]
 mod tests;
 
-pub use primitive::{Faces, Primitive};
 pub use polygon::Polygon;
+pub use primitive::{Faces, Primitive};
 
 use std::sync::Arc;
 
@@ -191,7 +191,9 @@ impl Solid {
             all.fold(from, pick)
         };
         match self {
-            Self::Primitive(primitive, placement) => primitive.support(&placement.turn.tr_mul(n)) + n.dot(&placement.at),
+            Self::Primitive(primitive, placement) => {
+                primitive.support(&placement.turn.tr_mul(n)) + n.dot(&placement.at)
+            }
             Self::Union(parts) => of(parts, f64::NEG_INFINITY, f64::max),
             Self::Intersection(parts) => of(parts, f64::INFINITY, f64::min),
             Self::Difference(base, _) => base.support(n),

@@ -64,7 +64,7 @@ pub use scene::camera::Camera;
 pub use scene::scenes::{SceneRequest, Scenes};
 pub use sequence::{NO_TABLE, Sequence};
 pub use snapshots::bodies::Bodies;
-pub use snapshots::field::{SYMMETRIC, Drawn, TENSOR, VECTOR};
+pub use snapshots::field::{Drawn, SYMMETRIC, TENSOR, VECTOR};
 pub use snapshots::front::{Direction, front, largest_reaches};
 pub use snapshots::grains::Selection;
 pub use snapshots::snapshot::Snapshot;

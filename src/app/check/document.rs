@@ -12,7 +12,8 @@ use populate;
 
 /// The whole report, in SI units.
 pub(super) fn document(
-    (case, approaches): (&Case, &[Approach]),
+    case: &Case,
+    approaches: &[Approach],
     ranks: usize,
     warnings: &[String],
 ) -> Value {
@@ -31,7 +32,7 @@ pub(super) fn document(
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
     let wall = steps.zip(files);
-    let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, (steps, &files)));
+    let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, steps, &files));
     json!({
         "title": case.title,
         "dimension": case.dimension,

@@ -64,9 +64,17 @@ pub fn checkpoints(
     for line in text::states(&a.text("/state")?, &b.text("/state")?) {
         differences.lines.push(format!("state {line}"));
     }
-    let particles = fields([a, b], FIELDS, &[], &mut differences, |differences, letter, name| {
-        differences.lines.push(format!("{name}: only {letter} has it"));
-    })?;
+    let particles = fields(
+        [a, b],
+        FIELDS,
+        &[],
+        &mut differences,
+        |differences, letter, name| {
+            differences
+                .lines
+                .push(format!("{name}: only {letter} has it"));
+        },
+    )?;
     differences.record(what, particles, report);
     Ok(())
 }
@@ -151,7 +159,12 @@ struct Matching {
 
 impl Matching {
     /// Matches the ids of two files, each in ascending order.
-    fn new(a: &Content, b: &Content, path: &str, differences: &mut Differences) -> Result<Self, ResultsError> {
+    fn new(
+        a: &Content,
+        b: &Content,
+        path: &str,
+        differences: &mut Differences,
+    ) -> Result<Self, ResultsError> {
         let (mine, theirs) = (a.ids(path)?, b.ids(path)?);
         let mut stretches: Vec<Stretch> = Vec::new();
         let mut lone: [Vec<u64>; 2] = [Vec::new(), Vec::new()];
@@ -323,7 +336,11 @@ impl<'a> Tally<'a> {
             "{}: {} particles differ; first {}; largest difference {:e}{unit} at {}",
             self.array.name, self.particles, first.1, self.largest, self.at
         ));
-        if differences.first.as_ref().is_none_or(|(id, _)| first.0 < *id) {
+        if differences
+            .first
+            .as_ref()
+            .is_none_or(|(id, _)| first.0 < *id)
+        {
             differences.first = Some(first);
         }
     }

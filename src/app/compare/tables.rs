@@ -38,12 +38,12 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
         (Ok(a), Ok(b)) => (a, b),
         // A run that never wrote a row has its header still.
         (Err(why), _) | (_, Err(why)) => {
-            report.book(name, "", &[format!("no table: {why}")]);
+            report.record(name, "", &[format!("no table: {why}")]);
             return;
         }
     };
     if a.columns != b.columns {
-        report.book(name, "", &["the columns differ".to_owned()]);
+        report.record(name, "", &["the columns differ".to_owned()]);
         return;
     }
     let common: Vec<&String> = a
@@ -74,7 +74,7 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
     if common.is_empty() && lone[0] > 0 && lone[1] > 0 {
         differences.push("they have no row in common".to_owned());
     }
-    report.book(name, &format!("{} rows agree", common.len()), &differences);
+    report.record(name, &format!("{} rows agree", common.len()), &differences);
     for (letter, count) in ["A", "B"].into_iter().zip(lone) {
         if count > 0 {
             report.note(format!("{name}: only {letter} has {count} more rows"));

@@ -55,12 +55,15 @@ Sound is the longitudinal speed at rest, √(M/ρ₀) with the P-wave modulus M.
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
     let all = || library::names().into_iter();
-    for (name, material) in all().filter_map(|name| library::find(name).map(|material| (name, material)))
+    for (name, material) in
+        all().filter_map(|name| library::find(name).map(|material| (name, material)))
     {
         write_row(&mut page, name, &material);
     }
     page.push_str("\n## Constants\n\nA source stands beside the first number that comes from it. The numbers below without one come from the same.\n");
-    for (name, table) in all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table))) {
+    for (name, table) in
+        all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table)))
+    {
         let _ = writeln!(page, "\n### {name}\n\n```toml\n{}\n```", table.trim_end());
     }
     page

@@ -51,8 +51,9 @@ pub fn last_rows(folder: &RunFolder) -> Value {
         ("gauges", last_of_gauges(folder)),
         ("fragments", Last::of(&folder.fragments())),
     ];
-    let values =
-        |(name, last): (&str, Option<Last>)| Some((name.to_owned(), output_format::table(&last?.sheet)));
+    let values = |(name, last): (&str, Option<Last>)| {
+        Some((name.to_owned(), output_format::table(&last?.sheet)))
+    };
     tables.into_iter().filter_map(values).collect()
 }
 

@@ -16,7 +16,11 @@ pub(super) fn report(folder: &RunFolder, text: &mut Text) -> Result<(), OutputEr
 }
 
 /// Reports the number and times of the snapshots of a schedule, or of the default ones.
-fn report_schedule(folder: &RunFolder, schedule: Option<&str>, text: &mut Text) -> Result<(), OutputError> {
+fn report_schedule(
+    folder: &RunFolder,
+    schedule: Option<&str>,
+    text: &mut Text,
+) -> Result<(), OutputError> {
     let snapshots = series::read(&folder.series_of(schedule))?;
     let span = match (snapshots.first(), snapshots.last()) {
         (Some(first), Some(last)) => {

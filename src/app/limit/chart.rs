@@ -1,9 +1,9 @@
 //! The chart of an equation, with the shots of a sweep.
 
 use super::laws::Law;
-use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 use desk::sweep::Shot;
 use model::readable::tidy;
+use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 
 /// Points of a curve, enough for sharp corners.
 const POINTS: u32 = 800;

@@ -40,7 +40,7 @@ pub fn plan(
         say(&job.summary(file));
     }
     args.format
-        .print(|| table::document((source, machine), &rows, &files));
+        .print(|| table::document(source, machine, &rows, &files));
     Ok(())
 }
 
@@ -53,7 +53,7 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
     let mut all = Vec::new();
     for nodes in args.nodes.iter().map(|&nodes| nodes as usize) {
         let mut rows = Vec::new();
-        for sharing in sharings(args, machine, (nodes, source.particles.positions.len()))? {
+        for sharing in sharings(args, machine, nodes, source.particles.positions.len())? {
             let ranks = nodes * sharing.ranks_per_node;
             let layout = layout_of(source, (ranks, None), sharing.ranks_per_node)?;
             rows.push(row_of(source, machine, &layout, sharing, &alone));
@@ -76,7 +76,8 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
 fn sharings(
     args: &PlanArgs,
     machine: &Machine,
-    (nodes, particles): (usize, usize),
+    nodes: usize,
+    particles: usize,
 ) -> Result<Vec<Sharing>, String> {
     let cores = machine.ranks_per_node(1);
     let ranks = |sharing: &Sharing| nodes * sharing.ranks_per_node;

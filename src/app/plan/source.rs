@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::results::{Results, only_part};
 use comm::Comm;
-use plot::snapshots;
 use files::input;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
@@ -12,6 +11,7 @@ use files::output::{RunFolder, checkpoint};
 use files::plan::{Outlook, Particles};
 use model::Case;
 use particles::ParticleStore;
+use plot::snapshots;
 
 /// The subject of the plan.
 pub struct Source {
@@ -118,7 +118,9 @@ fn of_snapshot(path: &Path, set: &[String]) -> Result<Source, String> {
                 Ok(vec![otherwise; rows.len()])
             }
         };
-        let positions = file.points(rows.clone()).map_err(|error| with_prefix(&error))?;
+        let positions = file
+            .points(rows.clone())
+            .map_err(|error| with_prefix(&error))?;
         let [bodies, frozen] = [column("body", f64::NAN)?, column("frozen", 0.0)?];
         // Masses are stored only with sizes; smoothing lengths that are not stored are those of the
         // start.

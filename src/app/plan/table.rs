@@ -95,7 +95,7 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// The whole report, in SI units.
-pub fn document((source, machine): (&Source, &Machine), rows: &[Row], files: &Files) -> Value {
+pub fn document(source: &Source, machine: &Machine, rows: &[Row], files: &Files) -> Value {
     let steps = source.outlook.steps;
     let mut document = output_format::table(&sheet(rows, steps));
     document["title"] = source.case.title.as_str().into();

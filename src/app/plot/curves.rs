@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use files::output::RunFolder;
+use files::run::say::seconds;
 use plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };
-use files::output::RunFolder;
-use files::run::say::seconds;
 
 use super::out::{named, save_text, target, write_chart};
 use super::{PlotArgs, name, sources_of, wanted};
@@ -150,7 +150,10 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
     let stem = format!("front-{body}-{}", direction.name().replace('_', "-"));
     let mut tables = Vec::new();
     for source in sources_of(args) {
-        let snapshots_of: Vec<_> = snapshots(source)?.into_iter().map(|snapshots_of| snapshots_of.1).collect();
+        let snapshots_of: Vec<_> = snapshots(source)?
+            .into_iter()
+            .map(|snapshots_of| snapshots_of.1)
+            .collect();
         let path = source.join(format!("pictures/{stem}.csv"));
         let text = front(&snapshots_of, body, direction)?;
         save_text(&path, text.as_bytes())?;

@@ -1,8 +1,8 @@
 //! The columns of particles, by the names that files and plots know.
 
 use super::ExportError;
-use plot::{SYMMETRIC, Drawn, Snapshot, TENSOR, VECTOR};
 use files::output::h5::{Array, Content, Element, RowType};
+use plot::{Drawn, SYMMETRIC, Snapshot, TENSOR, VECTOR};
 
 /// Group of a snapshot's particle fields.
 const FIELDS: &str = "/VTKHDF/PointData";
@@ -79,7 +79,8 @@ impl Column {
 
     /// The image that a row belongs to.
     pub fn image() -> Self {
-        let description = "Planes that it is an image behind: the sum of 1 (normal to x), 2 (y), 4 (z).";
+        let description =
+            "Planes that it is an image behind: the sum of 1 (normal to x), 2 (y), 4 (z).";
         Self {
             element: Element::U8,
             ..Self::made("image", &[""], "", description, Source::Image)
@@ -172,7 +173,13 @@ fn derived(snapshot: &Snapshot, name: &str) -> Result<Column, ExportError> {
     };
     let label = if whole { name.replace('_', " ") } else { label };
     let description = format!("Made from the snapshot's fields: {label}.");
-    Ok(Column::made(name, parts, &unit, &description, Source::Made(drawn)))
+    Ok(Column::made(
+        name,
+        parts,
+        &unit,
+        &description,
+        Source::Made(drawn),
+    ))
 }
 
 fn components(count: usize) -> &'static [&'static str] {

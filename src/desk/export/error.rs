@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use plot::PlotError;
 use files::output::OutputError;
 use files::output::h5::read::ReadError;
+use plot::PlotError;
 
 /// Why a snapshot could not be exported.
 #[derive(Debug, thiserror::Error)]

@@ -8,11 +8,11 @@ use super::column::{Column, Source, columns};
 use super::images::{Images, flips};
 use super::start::Start;
 use super::values::Values;
-use plot::{PlotError, Drawn, Snapshot};
 use files::output::Block;
 use files::output::h5::Content;
 use files::output::h5::RowType;
 use model::Axis;
+use plot::{Drawn, PlotError, Snapshot};
 
 /// Rows in memory at a time.
 const PIECE: usize = 1 << 17;

@@ -24,4 +24,4 @@ mod vtu;
 mod xyz;
 
 pub use error::ExportError;
-pub use format::{Format, Destination, Wish, export, script};
+pub use format::{Destination, Format, Wish, export, script};

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::ExportError;
-use plot::{Snapshot, colour_of};
 use files::output::{NewFile, RunFolder};
+use plot::{Snapshot, colour_of};
 
 const TEMPLATE: &str = include_str!("open_in_paraview.py");
 /// Its name.

@@ -10,8 +10,8 @@ use super::column::Column;
 use super::frame::{Frame, Piece};
 use super::text::line;
 use super::values::{IS_LITTLE, Values};
-use plot::colour_of;
 use files::output::{NewFile, VERSION};
+use plot::colour_of;
 
 /// Writes a snapshot.
 pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {

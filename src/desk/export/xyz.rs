@@ -54,7 +54,8 @@ type Property = (String, char, usize);
 
 fn head(frame: &Frame, columns: &[Printed], properties: &[Property], bodies: &[String]) -> String {
     let properties = properties.iter();
-    let properties = properties.map(|(name, type_code, width)| format!("{name}:{type_code}:{width}"));
+    let properties =
+        properties.map(|(name, type_code, width)| format!("{name}:{type_code}:{width}"));
     let properties: Vec<String> = properties.collect();
     let unit = |printed: &Printed| {
         let column = printed.column;

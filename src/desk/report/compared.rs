@@ -4,15 +4,15 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::run_files::{Rows, Run, figure_in_words, with_unit, without_paths};
 use super::html::{Html, missing, note, or_reason, table, table_of_texts};
 use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
+use super::run_files::{Rows, Run, figure_in_words, with_unit, without_paths};
 use super::sections::verdict;
-use plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 use files::output::RunFolder;
 use model::differences::{Difference, differences};
 use model::readable::short;
+use plot::{Columns, Pictures, Request, Sequence, Source, Tables};
 
 /// The page of two runs, A and B.
 #[must_use]
@@ -62,7 +62,13 @@ fn cases(runs: &[Run; 2]) -> Result<Html, String> {
             .as_ref()
             .map_or("not stated".to_owned(), figure_in_words)
     };
-    let row = |differences: &Difference| vec![differences.path.clone(), word(&differences.a), word(&differences.b)];
+    let row = |differences: &Difference| {
+        vec![
+            differences.path.clone(),
+            word(&differences.a),
+            word(&differences.b),
+        ]
+    };
     Ok(table_of_texts(
         &["key", &runs[0].name, &runs[1].name],
         differences.iter().map(row),

@@ -1,7 +1,7 @@
 //! Pieces of HTML, in which texts of files cannot become markup.
 
-use plot::{Rgb, hex};
 use model::readable::one_line;
+use plot::{Rgb, hex};
 
 /// A piece of a page: markup of our own, and texts that are escaped.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -11,10 +11,10 @@
 )]
 
 mod compared;
-mod run_files;
 mod html;
 mod page;
 mod picture;
+mod run_files;
 mod sections;
 mod viewer;
 

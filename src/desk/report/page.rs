@@ -6,8 +6,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-use super::run_files::{Run, with_unit};
 use super::html::{Html, missing, or_reason};
+use super::run_files::{Run, with_unit};
 use super::sections::{
     case, contacts, energies, environment, figures, fragments, load, measures, pictures, steps,
     verdict,

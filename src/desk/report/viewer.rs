@@ -8,11 +8,11 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::run_files::{Run, with_unit};
 use super::html::{Html, note, swatch};
-use plot::hex;
+use super::run_files::{Run, with_unit};
 use model::SymmetryPlane;
 use model::readable::short;
+use plot::hex;
 use scene::Scene;
 
 /// The script of the browser.

@@ -59,7 +59,8 @@ impl Condition {
             let (name, with) = text.split_once(sign)?;
             Some((name.trim(), compared, with.trim()))
         });
-        let Some((name, compared, with)) = comparison.filter(|(name, _, _)| !name.is_empty()) else {
+        let Some((name, compared, with)) = comparison.filter(|(name, _, _)| !name.is_empty())
+        else {
             return Err(format!(
                 "`{text}` is no condition, such as `failed`, \
                  `bodies.sphere.largest_temperature>900 K` or `history.interpenetrated==0`"

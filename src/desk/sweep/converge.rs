@@ -46,7 +46,9 @@ impl Converged {
             let extrapolated = finest(&runs.iter().map(|run| run.0).collect::<Vec<_>>(), &values)
                 .and_then(|(spacings, values)| extrapolate(spacings, values));
             let extrapolated = extrapolated.map(|f| [f.rate, f.limit, f.uncertainty]);
-            row.extend((0..3).map(|k| extrapolated.map_or_else(String::new, |f| format!("{:?}", f[k]))));
+            row.extend(
+                (0..3).map(|k| extrapolated.map_or_else(String::new, |f| format!("{:?}", f[k]))),
+            );
             table.push(row);
         }
         Ok(Self(Sheet {

@@ -34,7 +34,7 @@ use files::output::{OutputError, write_atomically};
 use model::readable::printable;
 use plan::{Bisection, Known, Plan};
 use point::Point;
-use queue::{Running, PointState};
+use queue::{PointState, Running};
 use table::Ended;
 
 /// Time between looks at runs.
@@ -216,7 +216,9 @@ impl Sweep {
         report: &mut impl FnMut(&str),
     ) -> Result<bool, SweepError> {
         let ended = match state {
-            PointState::Finished => Ended::Answered(answers::of_run(&self.launch.run_folder(point))?),
+            PointState::Finished => {
+                Ended::Answered(answers::of_run(&self.launch.run_folder(point))?)
+            }
             PointState::Failed(why) => Ended::Failed(why),
             PointState::Open | PointState::Held => return Ok(false),
         };

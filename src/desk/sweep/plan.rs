@@ -172,8 +172,14 @@ impl Plan {
     ///
     /// # Errors
     /// Those of [`Point::new`].
-    pub fn bisection(&self, case: &Table, values: &[Value], known: &Known) -> Result<Bisection, String> {
-        self.search(case, values, known).map(|(_, bisection)| bisection)
+    pub fn bisection(
+        &self,
+        case: &Table,
+        values: &[Value],
+        known: &Known,
+    ) -> Result<Bisection, String> {
+        self.search(case, values, known)
+            .map(|(_, bisection)| bisection)
     }
 
     /// Shares of the range that a bisection needs, with their points, and its state.
@@ -292,7 +298,10 @@ mod tests {
             points.iter().map(|p| p.name.clone()).zip(of).collect()
         };
         let bisection = |known: &Known| plan.bisection(&case, &[], known).unwrap();
-        assert_eq!(bisection(&all([Some(true), Some(true)])), Bisection::Nowhere(true));
+        assert_eq!(
+            bisection(&all([Some(true), Some(true)])),
+            Bisection::Nowhere(true)
+        );
         assert_eq!(bisection(&all([Some(true), None])), Bisection::Failed);
         assert_eq!(bisection(&Known::new()), Bisection::Open);
     }

@@ -93,9 +93,16 @@ fn primitives() -> Vec<(Primitive, f64)> {
 }
 
 fn solids() -> Vec<Solid> {
-    let mut all: Vec<Solid> = primitives().into_iter().map(|(primitive, _)| placed(primitive)).collect();
-    let ball = |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
-    let cube = Solid::Primitive(Primitive::Box(Vec3::repeat(1.0)), Placement::at(Vec3::zeros()));
+    let mut all: Vec<Solid> = primitives()
+        .into_iter()
+        .map(|(primitive, _)| placed(primitive))
+        .collect();
+    let ball =
+        |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
+    let cube = Solid::Primitive(
+        Primitive::Box(Vec3::repeat(1.0)),
+        Placement::at(Vec3::zeros()),
+    );
     all.push(Solid::Union(vec![ball(-0.5), ball(0.5)]));
     all.push(Solid::Intersection(vec![ball(0.5), cube.clone()]));
     all.push(Solid::Difference(Box::new(cube), vec![ball(1.0)]));
@@ -123,7 +130,8 @@ fn volumes_are_those_of_geometry() {
 
 #[test]
 fn together_solids_have_the_volume_of_geometry() {
-    let ball = |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
+    let ball =
+        |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
     // Two caps of height 1 − d/2.
     let lens = |d: f64| PI * (2.0 - d).powi(2) * (d * d + 4.0 * d) / (12.0 * d);
     let whole = 4.0 / 3.0 * PI;
@@ -302,7 +310,9 @@ fn forms_reach_as_far_as_their_support() {
 fn boxes_of_turned_solids_are_exact() {
     let turn = rotation(&Vec3::z(), 0.3);
     let (sin, cos) = 0.3_f64.sin_cos();
-    let put = |primitive, turn| Solid::Primitive(primitive, Placement::turned(turn, Vec3::new(1.0, 2.0, 3.0)));
+    let put = |primitive, turn| {
+        Solid::Primitive(primitive, Placement::turned(turn, Vec3::new(1.0, 2.0, 3.0)))
+    };
     let near = |solid: &Solid, lower: [f64; 3], upper: [f64; 3]| {
         let (l, u) = solid.bounds();
         let off = (l - Vec3::from(lower)).norm() + (u - Vec3::from(upper)).norm();

@@ -243,9 +243,9 @@ pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
     };
     let flat = |n: &usize| longest(soup, &soup.triangles[*n]).is_some();
     let mut open: Vec<usize> = (0..soup.triangles.len()).filter(flat).collect();
-    let number = open.len();
+    let flat_ones = open.len();
     // Each swap may leave another flat triangle, along a line of many corners.
-    let mut swaps = 100 * number;
+    let mut swaps = 100 * flat_ones;
     while let (Some(n), true) = (open.pop(), swaps > 0) {
         swaps -= 1;
         let t = soup.triangles[n];
@@ -271,5 +271,5 @@ pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
             open.push(index);
         }
     }
-    number
+    flat_ones
 }

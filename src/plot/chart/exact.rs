@@ -306,7 +306,8 @@ fn steps(load: &VelocityLoad) -> Result<Vec<(f64, Option<f64>)>, String> {
 }
 
 fn plate(segment: &Segment) -> Result<Plate, String> {
-    let fluid = matches!(segment.material.strength, Strength::None) && segment.material.failure.is_none();
+    let fluid =
+        matches!(segment.material.strength, Strength::None) && segment.material.failure.is_none();
     let medium = Medium::of(segment.material).filter(|_| fluid);
     let unknown = || {
         format!(

@@ -8,7 +8,7 @@ use crate::PlotError;
 use crate::canvas::INK;
 use crate::colour;
 use crate::header::Mark;
-use crate::snapshots::field::{Field, Drawn};
+use crate::snapshots::field::{Drawn, Field};
 use crate::snapshots::plane::Plane;
 use crate::snapshots::slice::{self, slice};
 use crate::snapshots::snapshot::Snapshot;

@@ -13,7 +13,10 @@ impl Chart {
     #[must_use]
     pub fn sheet(&self) -> Sheet {
         let curves: Vec<&Curve> = self.distinct().collect();
-        let named = curves.len() > 1 || curves.iter().any(|curve| !curve.name_in_tables().is_empty());
+        let named = curves.len() > 1
+            || curves
+                .iter()
+                .any(|curve| !curve.name_in_tables().is_empty());
         let [x, y] = [(&self.x, "x"), (&self.y, "y")].map(|(axis, other)| column(axis, other));
         let y = if x == y { format!("{y}_y") } else { y };
         let name = named.then(|| CURVE.to_owned());

@@ -55,7 +55,10 @@ pub fn write(
     clippy::cast_possible_truncation,
     reason = "parts of a picture whose sides fit"
 )]
-fn set_region(writer: &mut png::Writer<impl Write>, patch: Patch) -> Result<(), png::EncodingError> {
+fn set_region(
+    writer: &mut png::Writer<impl Write>,
+    patch: Patch,
+) -> Result<(), png::EncodingError> {
     // At no time may the frame reach beyond the picture.
     writer.set_frame_position(0, 0)?;
     writer.set_frame_dimension(patch.width as u32, patch.height as u32)?;

@@ -133,7 +133,10 @@ mod tests {
         now[5] = 3;
         now[10] = 4;
         let (patch, indices) = changed(Some(&before), &now, 4);
-        assert_eq!((patch.left, patch.top, patch.width, patch.height), (1, 1, 2, 2));
+        assert_eq!(
+            (patch.left, patch.top, patch.width, patch.height),
+            (1, 1, 2, 2)
+        );
         assert_eq!(indices, [3, Palette::SAME, Palette::SAME, 4]);
         let (patch, indices) = changed(Some(&now), &now, 4);
         assert_eq!((patch.width, patch.height), (1, 1));

@@ -184,7 +184,8 @@ impl Sequence for Pictures {
 
 /// The position of a section, in units that suit the positions and the particle spacing.
 fn section_text(cut: &Cut, snapshot: &Snapshot) -> String {
-    let position_text = |axis: Axis, position: f64| position_text(axis.name(), position, snapshot.finest());
+    let position_text =
+        |axis: Axis, position: f64| position_text(axis.name(), position, snapshot.finest());
     let length = |length: f64| quantity(length, snapshot.finest());
     cut.caption(snapshot, position_text, length)
 }

@@ -26,13 +26,7 @@ const DASHES: &[f32] = &[7.0, 5.0];
 const DASHES_AND_DOTS: &[f32] = &[14.0, 5.0, 2.0, 5.0];
 
 /// A line across the frame where a coordinate of one axis has a value (m), if it is in the view.
-fn across(
-    canvas: &mut Canvas,
-    style: Style,
-    panel: &Panel,
-    (axis, value): (usize, f64),
-    colour: Rgb,
-) {
+fn across(canvas: &mut Canvas, style: Style, panel: &Panel, axis: usize, value: f64, colour: Rgb) {
     let [right, up] = panel.axes();
     let (frame, view) = (&panel.frame, &panel.view);
     let within = |span: [f64; 2]| span[0] <= value && value <= span[1];
@@ -62,7 +56,8 @@ pub fn symmetry(canvas: &mut Canvas, style: Style, panel: &Panel, planes: &[Symm
             canvas,
             style,
             panel,
-            (plane.axis.index(), plane.position),
+            plane.axis.index(),
+            plane.position,
             SYMMETRY,
         );
     }
@@ -75,7 +70,7 @@ pub fn keep(canvas: &mut Canvas, style: Style, panel: &Panel, keep: Option<&Regi
             .iter()
             .flat_map(|keep| [keep.above[axis], keep.below[axis]])
         {
-            across(canvas, style, panel, (axis, side), KEEP);
+            across(canvas, style, panel, axis, side, KEEP);
         }
     }
 }
@@ -126,7 +121,7 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
             // Not over its arrow.
             let leftwards = dx > dy.abs();
             let text = shown(norm(v), "m/s");
-            label(canvas, style, at, (&text, leftwards), &panel.frame);
+            label(canvas, style, at, &text, leftwards, &panel.frame);
         }
     }
 }
@@ -156,7 +151,8 @@ fn label(
     canvas: &mut Canvas,
     style: Style,
     at: (f32, f32),
-    (text, leftwards): (&str, bool),
+    text: &str,
+    leftwards: bool,
     frame: &Frame,
 ) {
     let size = style.small();

@@ -77,7 +77,7 @@ pub fn preview(
         legend: legend(case),
     };
     let top = header.draw(None, style, width as f32);
-    let page = Page::new(case, style, [model, visible], plane, (width as f32, top));
+    let page = Page::new(case, style, [model, visible], plane, width as f32, top);
     let mut canvas = Canvas::new(width, whole(page.height))?;
     header.draw(Some(&mut canvas), style, width as f32);
     page.draw(&mut canvas, particles as f64)?;
@@ -125,7 +125,8 @@ impl<'a> Page<'a> {
         style: Style,
         [model, visible]: [Ends; 2],
         plane: Plane,
-        (width, top): (f32, f32),
+        width: f32,
+        top: f32,
     ) -> Self {
         let view = Panel::view_of(plane.axis, &visible);
         let unit = Readable::new("m", view.reach());

@@ -94,7 +94,7 @@ impl Radiographs {
             mirror: request.mirror,
         };
         let mut survey = Survey::new(REACH);
-        survey.look(sources, &mut selection, (&camera, &Cuts::default()), FLAT)?;
+        survey.look(sources, &mut selection, &camera, &Cuts::default(), FLAT)?;
         let view = survey
             .view()
             .ok_or(PlotError::Options("there is no matter to draw"))?;

@@ -276,7 +276,10 @@ mod tests {
                 let normal = seen.normal();
                 for (part, selection) in normal.into_iter().zip([x, -y, seen.depth]) {
                     // Steep sides lose digits of what points at the viewer.
-                    assert!((part - selection / 12.3).abs() < 0.02, "{x} {y}: {normal:?}");
+                    assert!(
+                        (part - selection / 12.3).abs() < 0.02,
+                        "{x} {y}: {normal:?}"
+                    );
                 }
             }
         }

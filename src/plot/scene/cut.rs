@@ -86,7 +86,8 @@ impl Cuts {
 
     /// `"cut open at x = 0 and y = 0"`; nothing if there is no cut.
     pub fn caption(&self, snapshot: &Snapshot) -> String {
-        let plane = |plane: &Plane| position_text(plane.axis.name(), plane.position, snapshot.finest());
+        let plane =
+            |plane: &Plane| position_text(plane.axis.name(), plane.position, snapshot.finest());
         let wedge = |wedge: &Vec<Plane>| wedge.iter().map(plane).collect::<Vec<_>>().join(" and ");
         match &self.wedges[..] {
             [] => String::new(),

@@ -11,8 +11,8 @@ use super::window::Window;
 use crate::PlotError;
 use crate::canvas::Rgb;
 use crate::picture::view::View;
-use crate::snapshots::images::Mirrors;
 use crate::snapshots::grains::{Grain, PORTION, Selection};
+use crate::snapshots::images::Mirrors;
 use crate::snapshots::snapshot::Snapshot;
 
 /// Samples along either axis of a pixel, where memory allows.

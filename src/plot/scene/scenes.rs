@@ -96,7 +96,7 @@ impl Scenes {
             mirror: request.mirror,
         };
         let mut survey = Survey::new(RADIUS);
-        survey.look(sources, &mut selection, (&camera, &cuts), FLAT)?;
+        survey.look(sources, &mut selection, &camera, &cuts, FLAT)?;
         let view = survey.view().ok_or(PlotError::Options(
             "there is nothing to see: choose another --cut, or other --bodies",
         ))?;
@@ -138,7 +138,9 @@ impl Scenes {
         let body = usize::from(seen.body);
         match &self.colours {
             Colours::Bodies(_) => colour::body(body),
-            Colours::Bar(_) if self.selection.bodies.rigid.get(body) == Some(&true) => colour::RIGID,
+            Colours::Bar(_) if self.selection.bodies.rigid.get(body) == Some(&true) => {
+                colour::RIGID
+            }
             Colours::Bar(bar) => bar.scale.colour(f64::from(seen.value)),
         }
     }

@@ -62,7 +62,8 @@ impl Survey {
         &mut self,
         sources: &[Source],
         selection: &mut Selection,
-        from: (&Camera, &Cuts),
+        camera: &Camera,
+        cuts: &Cuts,
         flat: &'static str,
     ) -> Result<(), PlotError> {
         for path in sources.iter().flat_map(|source| &source.snapshots) {
@@ -71,7 +72,7 @@ impl Survey {
                 return Err(PlotError::Options(flat));
             }
             let numbers = selection.bodies.add(&snapshot);
-            self.add(&snapshot, &numbers, selection, from)?;
+            self.add(&snapshot, &numbers, selection, camera, cuts)?;
             self.times.push(snapshot.time);
             self.snapshots.push((path.clone(), numbers));
         }
@@ -84,7 +85,8 @@ impl Survey {
         snapshot: &Snapshot,
         numbers: &[usize],
         selection: &Selection,
-        (camera, cuts): (&Camera, &Cuts),
+        camera: &Camera,
+        cuts: &Cuts,
     ) -> Result<(), PlotError> {
         let mirrors = selection.mirrors(snapshot);
         let slopes = cuts.slopes(camera);
@@ -98,7 +100,8 @@ impl Survey {
                 let mut bodies = BTreeSet::new();
                 for grain in part {
                     mirrors.reflect(&grain.point, &mut images);
-                    let bears = selection.drawn != Drawn::Body && !selection.bodies.rigid[grain.body];
+                    let bears =
+                        selection.drawn != Drawn::Body && !selection.bodies.rigid[grain.body];
                     for image in &images {
                         let at = camera.project(&image.point);
                         if takes(&slopes, &at) {

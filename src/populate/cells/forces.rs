@@ -294,7 +294,10 @@ impl<V: Lanes> Receivers<V> {
     fn meet(&self, grid: &Grid, first: usize, end: usize, sums: &mut [V; 3]) {
         let half = V::splat(0.5);
         let reach = V::splat(REACH * BEYOND);
-        for (position, &size) in grid.positions[first..end].iter().zip(&grid.sizes[first..end]) {
+        for (position, &size) in grid.positions[first..end]
+            .iter()
+            .zip(&grid.sizes[first..end])
+        {
             let dx = self.x.sub(V::splat(position[0]));
             let dy = self.y.sub(V::splat(position[1]));
             let dz = self.z.sub(V::splat(position[2]));

@@ -19,9 +19,9 @@ use rayon::prelude::*;
 
 use super::ExportError;
 use super::frame::{Frame, Wish};
-use plot::{Bodies, Selection, Drawn};
 use blocks::Blocks;
 use level::Ball;
+use plot::{Bodies, Drawn, Selection};
 
 /// Corners (m) of a triangle, which turn against the clock as seen from outside.
 pub type Triangle = [[f64; 3]; 3];

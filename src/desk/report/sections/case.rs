@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use plot::colour_of;
-use crate::report::run_files::{Rows, Run, in_words};
 use crate::report::html::{Html, list, missing, note, swatch, table, table_of_texts};
+use crate::report::run_files::{Rows, Run, in_words};
+use plot::colour_of;
 
 /// Tells the case.
 pub fn render(run: &Run) -> Result<Html, String> {
@@ -37,7 +37,8 @@ fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
         ("end time", inside("run", "end_time")),
     ];
     let entries = facts.into_iter();
-    entries.filter_map(|(name, value)| Some((name, value?)))
+    entries
+        .filter_map(|(name, value)| Some((name, value?)))
         .collect()
 }
 

@@ -1,9 +1,9 @@
 //! The ledger of contact, by pair of bodies.
 
-use plot::{Columns, Tables};
-use crate::report::run_files::{Rows, Run, with_unit};
 use crate::report::html::{Html, note, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
+use plot::{Columns, Tables};
 
 /// Draws the forces, and lists the last state of each pair.
 pub fn render(run: &Run) -> Result<Html, String> {

@@ -1,9 +1,9 @@
 //! Energies over time.
 
-use plot::History;
-use crate::report::run_files::{Rows, Run};
 use crate::report::html::{Html, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
+use plot::History;
 
 /// Columns of the history that are listed at the start and at the end.
 const COLUMNS: [&str; 6] = [

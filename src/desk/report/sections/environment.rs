@@ -1,7 +1,7 @@
 //! With what and on what the run was made.
 
-use crate::report::run_files::{Run, figure_in_words};
 use crate::report::html::{Html, list};
+use crate::report::run_files::{Run, figure_in_words};
 
 /// Figures of the summary that describe it, in this order, and their names.
 const FIGURES: [(&str, &str); 12] = [

@@ -1,7 +1,7 @@
 //! All figures of the summary.
 
-use crate::report::run_files::{Run, figure_in_words};
 use crate::report::html::{Html, table_of_texts};
+use crate::report::run_files::{Run, figure_in_words};
 
 /// Tells them all.
 pub fn render(run: &Run) -> Result<Html, String> {

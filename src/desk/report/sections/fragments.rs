@@ -1,9 +1,9 @@
 //! The fragments at the end.
 
-use plot::{By, cumulative};
-use crate::report::run_files::{Rows, Run};
 use crate::report::html::{Html, note, or_reason, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
+use plot::{By, cumulative};
 
 /// Fragments that are listed.
 const LISTED: usize = 12;

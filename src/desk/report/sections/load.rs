@@ -1,9 +1,9 @@
 //! The balance of the ranks, and the time of each phase.
 
-use plot::{Columns, History, Tables};
-use crate::report::run_files::{Rows, Run};
 use crate::report::html::{Html, bar, missing, note, or_reason, table};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
+use plot::{Columns, History, Tables};
 
 /// Tells load and time.
 pub fn render(run: &Run) -> Html {

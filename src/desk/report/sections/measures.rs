@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use plot::{Wanted, distributions};
-use crate::report::run_files::{Rows, Run, with_unit};
 use crate::report::html::{Html, missing, note, or_reason, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
+use plot::{Wanted, distributions};
 
 /// Tells the measures at their last time.
 pub fn render(run: &Run) -> Html {

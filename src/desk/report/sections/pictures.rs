@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
-use crate::report::run_files::Run;
 use crate::report::html::Html;
 use crate::report::picture::image;
+use crate::report::run_files::Run;
+use plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
 
 /// Draws the sections of snapshots in the order of time: by body, and by pressure where it is known.
 pub fn render(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use plot::{Columns, Tables, colour_of, hex};
-use crate::report::run_files::{Rows, Run, with_unit};
 use crate::report::html::{Html, note, swatch, table};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
+use plot::{Columns, Tables, colour_of, hex};
 
 /// Draws the steps over time, with what chose them.
 pub fn render(run: &Run) -> Result<Html, String> {

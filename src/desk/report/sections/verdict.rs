@@ -1,7 +1,7 @@
 //! Verdict on the run's figures: each against the bound that the book names.
 
-use crate::report::run_files::{Rows, Run};
 use crate::report::html::{Html, missing, note, table};
+use crate::report::run_files::{Rows, Run};
 use files::output::Phase;
 use model::readable::short;
 
@@ -168,11 +168,7 @@ pub fn render(run: &Run) -> Html {
 
 /// One sentence in colour and words.
 fn headline(checks: &[Check]) -> Html {
-    let of = |outcome: Outcome| {
-        checks
-            .iter()
-            .filter(move |check| check.outcome == outcome)
-    };
+    let of = |outcome: Outcome| checks.iter().filter(move |check| check.outcome == outcome);
     let known = checks.len() - of(Outcome::Unknown).count();
     let beyond: Vec<&str> = of(Outcome::Beyond).map(|check| check.what).collect();
     let unknown = match of(Outcome::Unknown).count() {

@@ -67,7 +67,10 @@ mod tests {
         assert_eq!(kept(1000, 1000), 1000);
         for most in [1000, 5000, 50_000] {
             let number = kept(most, 100_000);
-            assert!(number <= most && 5 * number >= 4 * most, "{number} of {most}");
+            assert!(
+                number <= most && 5 * number >= 4 * most,
+                "{number} of {most}"
+            );
         }
     }
 

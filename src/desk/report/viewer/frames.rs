@@ -14,7 +14,7 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::chosen::Chosen;
-use plot::{PlotError, Drawn, Snapshot};
+use plot::{Drawn, PlotError, Snapshot};
 
 /// The kept data of a snapshot.
 #[derive(Debug, Default)]
@@ -89,7 +89,8 @@ impl Kept {
     /// Ends of the places along each axis (m); without a share of the particles at each.
     pub fn ends(&self, without: f64) -> Ends {
         [0, 1, 2].map(|axis| {
-            let mut coordinates: Vec<f64> = self.positions.iter().map(|point| point[axis]).collect();
+            let mut coordinates: Vec<f64> =
+                self.positions.iter().map(|point| point[axis]).collect();
             let Some(last) = coordinates.len().checked_sub(1) else {
                 return [0.0; 2];
             };

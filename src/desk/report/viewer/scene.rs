@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::chosen::{Chosen, spread};
 use super::frames::{Ends, Frame, Kept};
-use plot::{PlotError, Rgb, Scale, Drawn, Snapshot, colour_of, decimals, hex};
 use model::readable::Readable;
 use model::{Axis, SymmetryPlane};
+use plot::{Drawn, PlotError, Rgb, Scale, Snapshot, colour_of, decimals, hex};
 
 /// Fields that may be coloured by, as far as snapshots have them.
 const FIELDS: [&str; 6] = [
