@@ -5,7 +5,7 @@ mod explain;
 
 use std::path::{Path, PathBuf};
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use super::plan::duration;
 use super::plot::out;
 use comm::Comm;
@@ -50,7 +50,7 @@ pub struct CheckArgs {
     explain: bool,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 
     /// Draw the particles as they will begin into this SVG or PNG file: a section, and what is seen of them
     /// along the axes
@@ -70,9 +70,9 @@ pub struct CheckArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &CheckArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     if args.explain {
-        return told(explain::explain(&args.case, &args.set));
+        return print_result(explain::explain(&args.case, &args.set));
     }
     let case = match input::load(&args.case, &args.set) {
         Ok(case) => case,
@@ -92,8 +92,8 @@ pub fn run(args: &CheckArgs) -> u8 {
         warn(&format!("warning: {warning}"));
     }
     let ranks = args.ranks as usize;
-    if !args.form.is_json() {
-        print_report((&case, &approaches), ranks);
+    if !args.format.is_json() {
+        print_report(&case, &approaches, ranks);
     }
     let drawn = args
         .picture
@@ -101,8 +101,8 @@ pub fn run(args: &CheckArgs) -> u8 {
         .map_or(Ok(()), |path| draw(&case, path, args.section.as_deref()));
     match drawn {
         Ok(()) => {
-            args.form
-                .tell(|| document((&case, &approaches), ranks, &warnings));
+            args.format
+                .print(|| document(&case, &approaches, ranks, &warnings));
             0
         }
         Err(error) => {
@@ -113,7 +113,7 @@ pub fn run(args: &CheckArgs) -> u8 {
 }
 
 /// Prints what a case is; gives the exit code.
-fn told(text: Result<String, InputError>) -> u8 {
+fn print_result(text: Result<String, InputError>) -> u8 {
     match text {
         Ok(text) => {
             say(text.trim_end());
@@ -134,7 +134,7 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
 /// The mass of so many particles of a body (SI); none of a rigid one.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 fn mass_of(case: &Case, body: &Body, count: u64) -> Option<f64> {
-    // Where all are alike they have been counted.
+    // Bodies with equal particles have been counted.
     let shares = || match body.lattice.grading {
         None => count as f64,
         Some(_) => populate::shares(body, case.dimension, &case.symmetry),
@@ -159,7 +159,7 @@ fn mass(case: &Case, body: &Body, count: u64) -> String {
     }
 }
 
-/// What a body is made of; gives the number of its particles.
+/// Prints the composition of a body; returns its number of particles.
 fn print_body(case: &Case, body: &Body) -> u64 {
     let count = populate::count(body, case.dimension, &case.symmetry, None);
     let range = |length: f64| {
@@ -181,12 +181,12 @@ fn print_body(case: &Case, body: &Body) -> u64 {
     ));
     if let Some((cloud, _)) = body.cloud() {
         let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();
-        let told = if names.is_empty() {
+        let with = if names.is_empty() {
             String::new()
         } else {
             format!(" with {}", names.join(", "))
         };
-        say(&format!("  {:<16} from {}{told}", "", cloud.file.path));
+        say(&format!("  {:<16} from {}{with}", "", cloud.file.path));
         if let Some((lower, upper)) = populate::bounds(body, case.dimension) {
             let [lower, upper] =
                 [lower, upper].map(|x| case.length_unit.vector(&x[..case.dimension]));
@@ -200,7 +200,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
 }
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
-fn print_report((case, approaches): (&Case, &[Approach]), ranks: usize) {
+fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
     say(&format!("{} ({}-D): sound", case.title, case.dimension));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
     let total: u64 = counts.sum();
@@ -224,7 +224,7 @@ fn print_report((case, approaches): (&Case, &[Approach]), ranks: usize) {
         say(&format!("  about {} steps to {end}", short(steps)));
     }
     let machine = machine(case, approaches);
-    print_costs(case, (total as f64, steps), ranks, &machine);
+    print_costs(case, total as f64, steps, ranks, &machine);
 }
 
 /// Bodies that are going to meet, with their names.
@@ -247,23 +247,18 @@ fn machine(case: &Case, approaches: &[Approach]) -> Machine {
 }
 
 /// Seconds of so many steps with their files on a machine.
-fn wall_time(case: &Case, ranks: usize, machine: &Machine, (steps, files): (f64, &Files)) -> f64 {
+fn wall_time(case: &Case, ranks: usize, machine: &Machine, steps: f64, files: &Files) -> f64 {
     let stepping = steps * plan::rough_step(case, ranks, machine);
     stepping + files.written() / machine.disk_bandwidth
 }
 
-/// What the run takes of an ordinary machine, and of the disk.
-fn print_costs(
-    case: &Case,
-    (particles, steps): (f64, Option<f64>),
-    ranks: usize,
-    machine: &Machine,
-) {
+/// Prints the time that the run takes on an ordinary machine, and its disk space.
+fn print_costs(case: &Case, particles: f64, steps: Option<f64>, ranks: usize, machine: &Machine) {
     let Ok(files) = Files::new(case, particles, steps.unwrap_or(0.0)) else {
         return;
     };
     if let Some(steps) = steps {
-        let wall = duration(wall_time(case, ranks, machine, (steps, &files)));
+        let wall = duration(wall_time(case, ranks, machine, steps, &files));
         let plural = if ranks == 1 { "" } else { "s" };
         let name = &machine.name;
         say(&format!(
@@ -274,10 +269,10 @@ fn print_costs(
     say(&format!("  about {disk} on the disk at the end"));
 }
 
-/// What the run is going to measure.
+/// Prints the measures of the run.
 fn print_measures(case: &Case) {
     let options = &case.measure;
-    let told = options.measures.iter().map(|measure| {
+    let names = options.measures.iter().map(|measure| {
         let (name, word) = (&measure.name, measure.kind.word());
         // Debris is called after what it has left, and bodies may be called what they are.
         match &measure.kind {
@@ -286,7 +281,7 @@ fn print_measures(case: &Case) {
             _ => format!("{name} ({word})"),
         }
     });
-    let mut all: Vec<String> = told.collect();
+    let mut all: Vec<String> = names.collect();
     let many = [
         (options.gauges.len(), "gauge"),
         (options.witnesses.len(), "witness plane"),

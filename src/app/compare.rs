@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use super::results::{Results, ResultsError};
 use files::output::checkpoint;
 use files::output::h5::Content;
@@ -39,9 +39,9 @@ pub struct CompareArgs {
     #[arg(value_name = "B")]
     pub b: PathBuf,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 }
 
 /// Exit code when something differs.
@@ -50,14 +50,14 @@ const EXIT_DIFFERENT: u8 = 1;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &CompareArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     match compare(&args.a, &args.b) {
         Ok(report) => {
             for line in &report.lines {
                 say(&one_line(line));
             }
             say(&report.verdict());
-            args.form.tell(|| {
+            args.format.print(|| {
                 json!({
                     "agrees": report.agrees(),
                     "compared": report.compared,
@@ -74,7 +74,7 @@ pub fn run(args: &CompareArgs) -> u8 {
     }
 }
 
-/// What was found.
+/// The result of a comparison.
 #[derive(Debug, Default)]
 pub struct Report {
     /// One line for each thing compared, and more for each difference.
@@ -86,7 +86,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Whether there was something to compare and all of it agrees.
+    /// `true` if there was something to compare and all of it agrees.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.compared > 0 && self.different == 0
@@ -100,9 +100,9 @@ impl Report {
         }
     }
 
-    /// Books a thing that both have: it agrees (and `agreement` says how much there is) unless
+    /// Records a thing that both have: it agrees (and `agreement` says how much there is) unless
     /// there are differences.
-    fn book(&mut self, what: &str, agreement: &str, differences: &[String]) {
+    fn record(&mut self, what: &str, agreement: &str, differences: &[String]) {
         self.compared += 1;
         if differences.is_empty() {
             self.lines.push(format!("{what}: {agreement}"));
@@ -150,7 +150,7 @@ pub fn compare(a: &Path, b: &Path) -> Result<Report, ResultsError> {
 
 fn case(a: &str, b: &str, report: &mut Report) {
     let differences = text::cases(a, b);
-    report.book(
+    report.record(
         "case",
         "agrees, but for output, run and domain",
         &differences,
@@ -168,8 +168,8 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
         tables::compare("gauges", &a, &b, report);
     }
     let names = |folder: &RunFolder| -> Result<BTreeSet<String>, ResultsError> {
-        let usual = folder.snapshot_files()?;
-        let mut all: BTreeSet<String> = usual.iter().map(|path| name_of(path)).collect();
+        let unscheduled = folder.snapshot_files()?;
+        let mut all: BTreeSet<String> = unscheduled.iter().map(|path| name_of(path)).collect();
         for schedule in folder.schedules()? {
             let own = folder.snapshot_files_of(Some(&schedule))?;
             all.extend(
@@ -184,8 +184,8 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
         content::snapshots(&open(a)?, &open(b)?, &name, report)?;
     }
     let names = |folder: &RunFolder| -> Result<BTreeSet<String>, ResultsError> {
-        let found = checkpoint::list(&folder.checkpoints())?;
-        Ok(found.iter().map(|(_, path)| name_of(path)).collect())
+        let listed = checkpoint::list(&folder.checkpoints())?;
+        Ok(listed.iter().map(|(_, path)| name_of(path)).collect())
     };
     for name in in_both(&names(a)?, &names(b)?, report) {
         let open = |folder: &RunFolder| {

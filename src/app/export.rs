@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::form::{Form, wrote};
+use super::output_format::{OutputFormat, wrote};
 use super::which::Several;
-use desk::export::{self, ExportError, Format, Place, Wish};
+use desk::export::{self, Destination, ExportError, Format, Wish};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
 use model::readable::one_line;
@@ -44,7 +44,7 @@ pub struct ExportArgs {
     #[arg(short, long, value_name = "FILE_OR_FOLDER")]
     pub out: Option<PathBuf>,
 
-    /// Which snapshots of a run.
+    /// The snapshots of a run.
     #[command(flatten)]
     pub which: Several,
 
@@ -67,18 +67,18 @@ pub struct ExportArgs {
     #[arg(long, value_name = "LENGTH")]
     pub cell: Option<String>,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 }
 
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &ExportArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     match write(args) {
         Ok(bodies) => {
-            args.form.tell(|| json!({ "types": bodies }));
+            args.format.print(|| json!({ "types": bodies }));
             0
         }
         Err(error) => {
@@ -102,14 +102,14 @@ pub fn write(args: &ExportArgs) -> Result<Vec<String>, ExportError> {
         cell: args.cell.as_deref().map(cell).transpose()?,
     };
     let snapshots = args.which.at(&args.source, Wanted::Last)?;
-    let place = place(args)?;
-    let mut tell = |path: &Path| wrote(path, "");
+    let destination = destination(args)?;
+    let mut on_written = |path: &Path| wrote(path, "");
     if args.to == Format::Paraview {
         let run = args.source.is_dir().then_some(args.source.as_path());
-        export::script(run, &snapshots[0], &place, &mut tell)?;
+        export::script(run, &snapshots[0], &destination, &mut on_written)?;
         return Ok(Vec::new());
     }
-    export::export(&snapshots, args.to, &wish, &place, &mut tell)?;
+    export::export(&snapshots, args.to, &wish, &destination, &mut on_written)?;
     let numbered = args.to.numbers_bodies();
     let names = numbered.then(|| bodies(&snapshots[0])).transpose()?;
     let names = names.unwrap_or_default();
@@ -122,10 +122,10 @@ pub fn write(args: &ExportArgs) -> Result<Vec<String>, ExportError> {
 /// Refuses options that the format has no use for.
 fn check(args: &ExportArgs) -> Result<(), ExportError> {
     let chosen = args.which.any();
-    let told = !args.fields.is_empty() || !args.bodies.is_empty() || args.mirror;
+    let filtered = !args.fields.is_empty() || !args.bodies.is_empty() || args.mirror;
     let what = match args.to {
         Format::Stl if !args.fields.is_empty() => "surfaces have no --fields",
-        Format::Paraview if chosen || told => {
+        Format::Paraview if chosen || filtered => {
             "the script for ParaView opens all snapshots with all that they hold: no other options"
         }
         format if format != Format::Stl && args.cell.is_some() => "--cell belongs to --to stl",
@@ -142,8 +142,8 @@ fn cell(text: &str) -> Result<f64, ExportError> {
     Err(ExportError::Options("--cell must be positive".to_owned()))
 }
 
-/// Where the files go: a name with the format's ending is that of the only one.
-fn place(args: &ExportArgs) -> Result<Place, ExportError> {
+/// The destination of the files: a name with the format's ending is that of the only one.
+fn destination(args: &ExportArgs) -> Result<Destination, ExportError> {
     let ending = args.to.ending();
     let Some(out) = &args.out else {
         let folder = match (args.to, args.source.is_dir()) {
@@ -151,12 +151,12 @@ fn place(args: &ExportArgs) -> Result<Place, ExportError> {
             (_, true) => args.source.join("export"),
             (_, false) => args.source.parent().unwrap_or(Path::new("")).to_owned(),
         };
-        return Ok(Place { folder, file: None });
+        return Ok(Destination { folder, file: None });
     };
     let is_folder = out.is_dir() || out.as_os_str().to_string_lossy().ends_with('/');
     let given = out.extension().map(|e| e.to_string_lossy().into_owned());
     match given {
-        Some(given) if !is_folder && given.eq_ignore_ascii_case(ending) => Ok(Place {
+        Some(given) if !is_folder && given.eq_ignore_ascii_case(ending) => Ok(Destination {
             folder: out.parent().unwrap_or(Path::new("")).to_owned(),
             file: Some(out.clone()),
         }),
@@ -166,7 +166,7 @@ fn place(args: &ExportArgs) -> Result<Place, ExportError> {
                 "cannot write {path}: give a name that ends in .{ending}, or a folder with / at its end"
             )))
         }
-        _ => Ok(Place {
+        _ => Ok(Destination {
             folder: out.clone(),
             file: None,
         }),

@@ -1,13 +1,13 @@
 //! `whipple fragments`: the fragments of a run's snapshots, by the code of the run itself.
 
-mod matter;
+mod loaded;
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::form::{self, Form, wrote};
+use super::output_format::{self, OutputFormat, wrote};
 use super::results::ResultsError;
 use super::which::Which;
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
@@ -16,7 +16,7 @@ use files::output::fragments::FragmentTable;
 use files::output::{OutputError, RunFolder, Sheet, write_atomically};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, seconds, warn};
-use matter::Loaded;
+use loaded::Loaded;
 use model::readable::{one_line, shown, shown_vector};
 use model::{FragmentOptions, Include};
 use plot::{PlotError, choose, snapshots};
@@ -36,7 +36,7 @@ pub struct FragmentsArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
 
-    /// Which snapshot of a run.
+    /// The snapshot of a run.
     #[command(flatten)]
     pub which: Which,
 
@@ -62,9 +62,9 @@ pub struct FragmentsArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub min_particles: Option<u64>,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 
     /// Write the table of all fragments, as a run does into its folder `fragments`
     #[arg(long, value_name = "FILE")]
@@ -75,7 +75,7 @@ pub struct FragmentsArgs {
     pub hdf5: Option<PathBuf>,
 }
 
-/// Why the fragments of a snapshot cannot be told.
+/// Why the fragments of a snapshot are unknown.
 #[derive(Debug, thiserror::Error)]
 pub enum FragmentsError {
     /// No snapshot is found.
@@ -87,12 +87,12 @@ pub enum FragmentsError {
     /// A file cannot be read or written.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// What a snapshot says of itself makes no sense, or it says too little.
+    /// The snapshot's description of itself is inconsistent or incomplete.
     #[error("{} cannot be taken: {reason}", path.display())]
     Snapshot {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// An option of the command line is out of range.
@@ -106,8 +106,8 @@ const LISTED: usize = 10;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &FragmentsArgs) -> u8 {
-    args.form.begin();
-    match tell(args) {
+    args.format.begin();
+    match evaluate(args) {
         Ok(text) => {
             say(text.trim_end());
             0
@@ -123,7 +123,7 @@ pub fn run(args: &FragmentsArgs) -> u8 {
 ///
 /// # Errors
 /// [`FragmentsError`] if there is no such snapshot, or if it cannot be read or a table not written.
-pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
+pub fn evaluate(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     if args.link.is_some_and(|link| !(1.0..=4.0).contains(&link)) {
         return Err(FragmentsError::Link);
     }
@@ -138,8 +138,8 @@ pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     }
     let rule = Rule::new(&options, loaded.dimension);
     let included = loaded.included(options.include);
-    let matter = loaded.matter(&included);
-    let census = find_alone(&matter, &loaded.symmetry, &rule);
+    let particles = loaded.particles(&included);
+    let census = find_alone(&particles, &loaded.symmetry, &rule);
     let bodies: Vec<&str> = loaded.bodies.iter().map(String::as_str).collect();
     let table = FragmentTable::new(&census, &bodies, loaded.dimension);
     if let Some(path) = &args.csv {
@@ -150,8 +150,8 @@ pub fn tell(args: &FragmentsArgs) -> Result<String, FragmentsError> {
         table.write_hdf5(path)?;
         wrote(path, "");
     }
-    args.form
-        .tell(|| document(&loaded, &census, &options, &table));
+    args.format
+        .print(|| document(&loaded, &census, &options, &table));
     Ok(report(&loaded, &census, &options))
 }
 
@@ -164,24 +164,24 @@ fn chosen(args: &FragmentsArgs) -> Result<PathBuf, FragmentsError> {
         }
         return Ok(args.path.clone());
     }
-    let found = snapshots(RunFolder::at(&args.path).path())?;
-    Ok(choose(&found, &args.which.wanted()?)?.remove(0))
+    let available = snapshots(RunFolder::at(&args.path).path())?;
+    Ok(choose(&available, &args.which.wanted()?)?.remove(0))
 }
 
 /// The rule of the case with what the command line changes of it.
 fn options(args: &FragmentsArgs, of_case: Option<FragmentOptions>) -> FragmentOptions {
-    let usual = of_case.unwrap_or_default();
+    let defaults = of_case.unwrap_or_default();
     FragmentOptions {
-        link: args.link.unwrap_or(usual.link),
+        link: args.link.unwrap_or(defaults.link),
         include: match args.include.as_deref() {
             Some("all") => Include::All,
             Some(_) => Include::Intact,
-            None => usual.include,
+            None => defaults.include,
         },
-        bridges: args.bridges || usual.bridges,
-        across_bodies: !args.apart && usual.across_bodies,
-        min_particles: args.min_particles.unwrap_or(usual.min_particles),
-        ..usual
+        bridges: args.bridges || defaults.bridges,
+        across_bodies: !args.apart && defaults.across_bodies,
+        min_particles: args.min_particles.unwrap_or(defaults.min_particles),
+        ..defaults
     }
 }
 
@@ -222,7 +222,7 @@ fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String
     text
 }
 
-/// All that is told, in SI units, with the table of all fragments.
+/// The whole report, in SI units, with the table of all fragments.
 fn document(
     loaded: &Loaded,
     census: &Census,
@@ -231,7 +231,7 @@ fn document(
 ) -> Value {
     let share = |share: &Share| json!({ "mass": share.mass, "particles": share.particles });
     let sheet = Sheet::parse(&String::from_utf8_lossy(&table.text()));
-    let mut document = form::table(&sheet.expect("a table that was made here"));
+    let mut document = output_format::table(&sheet.expect("a table that was made here"));
     document["title"] = loaded.title.as_str().into();
     document["time"] = loaded.time.into();
     document["units"]["time"] = "s".into();

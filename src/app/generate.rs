@@ -93,7 +93,7 @@ pub fn run(args: &GenerateArgs, program: Command) -> u8 {
     }
 }
 
-/// The program whose `--set` takes keys of the schema and nothing else, for shells to complete them.
+/// The program with the keys of the schema as the only values of `--set`, for completion in shells.
 fn with_keys(program: Command) -> Command {
     let words = |keys: BTreeSet<String>| {
         // They last as long as the program, which ends once the script is written.

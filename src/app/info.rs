@@ -9,8 +9,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::form::Form;
-use super::results::{GRID, POINT_DATA, Results, ResultsError, component_names, running, standing};
+use super::output_format::OutputFormat;
+use super::results::{
+    GRID, POINT_DATA, Results, ResultsError, component_names, running, status_and_presence,
+};
 use files::output::checkpoint::{self, FIELDS};
 use files::output::h5::read::PORTION;
 use files::output::h5::{Array, Content, Element, RowType};
@@ -34,9 +36,9 @@ pub struct InfoArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 }
 
 /// Rows read at a time.
@@ -45,11 +47,11 @@ const CHUNK: usize = 1 << 18;
 /// Runs the command; returns the exit code.
 #[must_use]
 pub fn run(args: &InfoArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     match look(&args.path) {
         Ok(text) => {
             say(text.lines.trim_end());
-            args.form.tell(|| text.values.into());
+            args.format.print(|| text.values.into());
             0
         }
         Err(error) => {
@@ -59,7 +61,7 @@ pub fn run(args: &InfoArgs) -> u8 {
     }
 }
 
-/// What the command prints.
+/// The text that the command prints.
 ///
 /// # Errors
 /// [`ResultsError`] if the path cannot be read.
@@ -269,7 +271,7 @@ fn for_chunks(
     Ok(())
 }
 
-/// What the last row of the run's fragments says, if there is one.
+/// The last row of the run's fragments, if there is one.
 fn fragments(folder: &RunFolder) -> Option<String> {
     let text = String::from_utf8(read_regular(&folder.fragments()).ok()?).ok()?;
     let sheet = Sheet::parse(&text).ok()?;
@@ -285,7 +287,7 @@ fn fragments(folder: &RunFolder) -> Option<String> {
 }
 
 fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
-    let (status, presence) = standing(folder, |_| true)?;
+    let (status, presence) = status_and_presence(folder, |_| true)?;
     text.both("run", folder.path().display().to_string());
     let input = read_small(&folder.case()).unwrap_or_default();
     let input: toml::Table = toml::from_slice(&input).unwrap_or_default();
@@ -305,7 +307,7 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
     text.both("step", status.step);
     text.entry("time", seconds(status.time));
     text.value("time_s", status.time);
-    snapshots::tell(folder, text)?;
+    snapshots::report(folder, text)?;
     if let Some(line) = fragments(folder) {
         text.entry("fragments", line);
     }

@@ -3,7 +3,6 @@
 mod check;
 pub mod compare;
 mod export;
-mod form;
 pub mod fragments;
 mod generate;
 pub mod info;
@@ -11,6 +10,7 @@ mod limit;
 mod materials;
 mod measure;
 mod new;
+mod output_format;
 mod plan;
 pub mod plot;
 mod report;
@@ -101,7 +101,7 @@ pub fn main(commit: &'static str) -> ExitCode {
         Err(error) => {
             launch::once(|| match version::asked(&error) {
                 Some(text) => say::say(&text),
-                None => tell(&error),
+                None => print_error(&error),
             });
             return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
         }
@@ -141,7 +141,7 @@ pub fn main(commit: &'static str) -> ExitCode {
 
 /// Says what is wrong with the command line, or the help; in colours, unless the words that it
 /// repeats would do more than that to the terminal.
-fn tell(error: &clap::Error) {
+fn print_error(error: &clap::Error) {
     let hostile = |word: OsString| !word.to_string_lossy().chars().all(is_printable);
     if std::env::args_os().any(hostile) {
         say::warn(&error.to_string());

@@ -7,7 +7,7 @@ mod table;
 
 use std::path::PathBuf;
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use super::plot::out::{PictureFormat, check_picture, save_text, write_chart};
 use desk::sweep::{self, Shot, SweepError, Values};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
@@ -48,7 +48,7 @@ struct Output {
     speeds: String,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 
     /// Draw a chart into this SVG or PNG file
     #[arg(long, value_name = "FILE")]
@@ -128,7 +128,7 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
             shots
         }
     };
-    output.form.begin();
+    output.format.begin();
     say(&law.title);
     say(table::text(&law, &speeds).trim_end_matches('\n'));
     say("");
@@ -149,7 +149,9 @@ fn limit(args: &LimitArgs) -> Result<(), LimitError> {
     if let Some(path) = output.plot.clone().or(own) {
         draw(&law, &speeds, &shots, &path, output.width)?;
     }
-    output.form.tell(|| table::document(&law, &speeds, &shots));
+    output
+        .format
+        .print(|| table::document(&law, &speeds, &shots));
     Ok(())
 }
 

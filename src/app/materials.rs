@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::json;
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
 use material::{Constant, Material, Value, library};
@@ -23,15 +23,15 @@ pub struct MaterialsArgs {
     name: Option<String>,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 }
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &MaterialsArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     let Some(name) = &args.name else {
         say(list().trim_end());
-        args.form.tell(|| {
+        args.format.print(|| {
             let all: Vec<_> = library::names().into_iter().filter_map(as_json).collect();
             all.into()
         });
@@ -39,7 +39,7 @@ pub fn run(args: &MaterialsArgs) -> u8 {
     };
     if let (Some(text), Some(document)) = (table(name, Sources::All), as_json(name)) {
         say(text.trim_end());
-        args.form.tell(|| document);
+        args.format.print(|| document);
         return 0;
     }
     let names = library::names().join(", ");
@@ -72,7 +72,7 @@ fn list() -> String {
     text + "\n`whipple materials NAME` prints each number of one with its source.\n"
 }
 
-/// Which law of a kind the constants belong to: `tait` of `eos.tait.b`.
+/// The law of a kind that the constants belong to: `tait` of `eos.tait.b`.
 fn law<'a>(constants: &'a [Constant], kind: &str) -> &'a str {
     let second = |constant: &'a Constant| {
         let mut words = constant.key.split('.');
@@ -81,7 +81,7 @@ fn law<'a>(constants: &'a [Constant], kind: &str) -> &'a str {
     constants.iter().find_map(second).unwrap_or("none")
 }
 
-/// Lines beside which a source stands.
+/// Lines with a source beside them.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Sources {
     /// All lines.
@@ -117,7 +117,7 @@ pub fn table(name: &str, sources: Sources) -> Option<String> {
     Some(text)
 }
 
-/// What users compare and no table holds.
+/// Quantities that users compare and no table holds.
 fn derived(material: &Material) -> String {
     format!(
         "p-wave modulus {}, longitudinal sound speed {:.0} m/s",

@@ -1,8 +1,9 @@
-//! `whipple measure`: what the measures of a case tell of its snapshots, by the code of the run itself.
+//! `whipple measure`: the measures of a case, evaluated on its snapshots by the code of the run
+//! itself.
 
 use std::path::{Path, PathBuf};
 
-use super::form::{self, Form, wrote};
+use super::output_format::{self, OutputFormat, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
@@ -32,7 +33,7 @@ pub struct MeasureArgs {
     #[arg(value_name = "FILE_OR_RUN")]
     pub path: PathBuf,
 
-    /// Which snapshot of a run.
+    /// The snapshot of a run.
     #[command(flatten)]
     pub which: Which,
 
@@ -44,16 +45,16 @@ pub struct MeasureArgs {
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 
     /// Write the rows of measures.csv
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 }
 
-/// Why the measures of a snapshot cannot be told.
+/// Why the measures of a snapshot are unknown.
 #[derive(Debug, thiserror::Error)]
 pub enum MeasureError {
     /// No snapshot is found.
@@ -68,20 +69,20 @@ pub enum MeasureError {
     /// The snapshot's case cannot be read.
     #[error(transparent)]
     Case(#[from] InputError),
-    /// What a snapshot says of itself makes no sense, or it says too little.
+    /// The snapshot's description of itself is inconsistent or incomplete.
     #[error("{} cannot be taken: {reason}", path.display())]
     Snapshot {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
 }
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &MeasureArgs) -> u8 {
-    args.form.begin();
-    match tell(args) {
+    args.format.begin();
+    match evaluate(args) {
         Ok(text) => {
             say(text.trim_end());
             0
@@ -93,26 +94,32 @@ pub fn run(args: &MeasureArgs) -> u8 {
     }
 }
 
-fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
+fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let (first, paths) = chosen(args)?;
     let comm = Comm::solo();
     let mut remembered = match &first {
         Some(path) => {
             let first = Loaded::read(path, &args.set)?;
-            remember(&first.matter(), &comm)
+            remember(&first.particles(), &comm)
         }
         None => Vec::new(),
     };
-    let mut told = Vec::new();
+    let mut evaluated = Vec::new();
     let mut text = String::new();
     for path in &paths {
         let loaded = Loaded::read(path, &args.set)?;
-        let found = findings(loaded.time, &mut remembered, None, &loaded.matter(), &comm);
-        text = report(&loaded, loaded.case.measure.measures.iter().zip(&found));
-        told.push((loaded.case, loaded.time, found));
+        let measured = findings(
+            loaded.time,
+            &mut remembered,
+            None,
+            &loaded.particles(),
+            &comm,
+        );
+        text = report(&loaded, loaded.case.measure.measures.iter().zip(&measured));
+        evaluated.push((loaded.case, loaded.time, measured));
     }
-    let rows = told.iter().flat_map(|(case, time, found)| {
-        let all = case.measure.measures.iter().zip(found);
+    let rows = evaluated.iter().flat_map(|(case, time, measured)| {
+        let all = case.measure.measures.iter().zip(measured);
         measures::figures(*time, all, case.dimension)
     });
     let table = measures::table(&rows.collect::<Vec<_>>());
@@ -120,10 +127,13 @@ fn tell(args: &MeasureArgs) -> Result<String, MeasureError> {
         write_atomically(path, &table)?;
         wrote(path, "");
     }
-    args.form.tell(|| {
+    args.format.print(|| {
         let sheet = Sheet::parse(&String::from_utf8_lossy(&table));
-        let mut document = form::table(&sheet.expect("a table that was made here"));
-        document["title"] = told.last().map(|(case, ..)| case.title.as_str()).into();
+        let mut document = output_format::table(&sheet.expect("a table that was made here"));
+        document["title"] = evaluated
+            .last()
+            .map(|(case, ..)| case.title.as_str())
+            .into();
         document
     });
     Ok(text)
@@ -140,12 +150,15 @@ fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), Measure
         return Ok((None, vec![args.path.clone()]));
     }
     let folder = RunFolder::at(&args.path);
-    let found = snapshots(folder.path())?;
-    let first = choose(&found, &Wanted::Indices(vec![0]))?.pop();
+    let available = snapshots(folder.path())?;
+    let first = choose(&available, &Wanted::Indices(vec![0]))?.pop();
     if args.all {
-        return Ok((first, found.into_iter().map(|found| found.1).collect()));
+        return Ok((
+            first,
+            available.into_iter().map(|available| available.1).collect(),
+        ));
     }
-    Ok((first, choose(&found, &args.which.wanted()?)?))
+    Ok((first, choose(&available, &args.which.wanted()?)?))
 }
 
 /// A field that the measures of a case need and a snapshot does not have.
@@ -188,12 +201,12 @@ impl Loaded {
         };
         let text = Content::open(path)?.text("/whipple/input")?;
         let case = input::parse(&path.display().to_string(), &text, set)?;
-        let told = |error: ReadError| wrong(error.to_string());
-        let file = SnapshotFile::open(path).map_err(told)?;
-        if let Some(part) = file.portion().map_err(told)? {
+        let read_error = |error: ReadError| wrong(error.to_string());
+        let file = SnapshotFile::open(path).map_err(read_error)?;
+        if let Some(part) = file.part().map_err(read_error)? {
             return Err(wrong(only_part(&part)));
         }
-        let names = file.names().map_err(told)?;
+        let names = file.names().map_err(read_error)?;
         let has = |field: &str| names.iter().any(|name| name == field);
         if has("stress_mass") {
             return Err(wrong(
@@ -211,9 +224,9 @@ impl Loaded {
             if !has(name) {
                 return Ok(vec![0.0; count * components]);
             }
-            match file.components(name).map_err(told)? {
-                found if found == components => file.values(name, 0..count).map_err(told),
-                found => Err(wrong(format!("its field {name} has {found} components"))),
+            match file.components(name).map_err(read_error)? {
+                actual if actual == components => file.values(name, 0..count).map_err(read_error),
+                actual => Err(wrong(format!("its field {name} has {actual} components"))),
             }
         };
         let bodies = case.bodies.len();
@@ -223,9 +236,9 @@ impl Loaded {
         };
         let body = field("body", 1)?.into_iter().map(index);
         let mut loaded = Self {
-            time: file.time().map_err(told)?,
+            time: file.time().map_err(read_error)?,
             body: body.collect::<Result<_, _>>()?,
-            position: file.points(0..count).map_err(told)?,
+            position: file.points(0..count).map_err(read_error)?,
             velocity: field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
             mass: field("mass", 1)?,
             density: field("density", 1)?,
@@ -257,7 +270,7 @@ impl Loaded {
         }
     }
 
-    fn matter(&self) -> Matter<'_> {
+    fn particles(&self) -> Matter<'_> {
         Matter {
             case: &self.case,
             mirrors: mirrors(&self.case),
@@ -281,17 +294,20 @@ fn keep<T: Copy>(values: &mut Vec<T>, frozen: &[f64]) {
 }
 
 /// The figures of a snapshot, a line for each.
-fn report<'a>(loaded: &Loaded, found: impl Iterator<Item = (&'a Measure, &'a Findings)>) -> String {
+fn report<'a>(
+    loaded: &Loaded,
+    findings: impl Iterator<Item = (&'a Measure, &'a Findings)>,
+) -> String {
     use std::fmt::Write as _;
     let title = one_line(&loaded.case.title);
     let mut text = format!("{title} at {}\n", seconds(loaded.time));
-    for (measure, found) in found {
-        if found.figures.is_empty() {
+    for (measure, findings) in findings {
+        if findings.figures.is_empty() {
             let _ = writeln!(text, "{}: told by the run alone", measure.name);
             continue;
         }
         let _ = writeln!(text, "{} ({})", measure.name, measure.kind.word());
-        for figure in &found.figures {
+        for figure in &findings.figures {
             let unit = files::output::unit_of_model(figure.unit, loaded.case.dimension);
             let value = match figure.value {
                 Told::Number(number) if number.is_nan() => "–".to_owned(),

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use serde_json::json;
 
-use super::form::{Form, wrote};
+use super::output_format::{OutputFormat, wrote};
 use files::input;
 use files::output::{OutputError, write_atomically};
 use files::run::exit::EXIT_INPUT;
@@ -32,7 +32,7 @@ pub struct NewArgs {
     from: Kind,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -97,11 +97,11 @@ enum NewError {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &NewArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     match write(args) {
         Ok(()) => {
-            args.form
-                .tell(|| json!({ "schema": args.folder.join(SCHEMA) }));
+            args.format
+                .print(|| json!({ "schema": args.folder.join(SCHEMA) }));
             0
         }
         Err(error) => {

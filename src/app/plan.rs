@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::PossibleValuesParser;
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use super::plot::out::{check_picture, save_text, write_chart};
 use files::output::read_small;
 use files::plan::{Files, Layout, Load, Machine, Row, Sharing, Weak, computing, work_of_unequal};
@@ -113,7 +113,7 @@ pub struct PlanArgs {
     chart: Option<PathBuf>,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 
     /// Write the table, in SI units, into this file
     #[arg(long, value_name = "FILE")]
@@ -126,7 +126,7 @@ pub struct PlanArgs {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &PlanArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     let (done, code) = match (&args.calibrate, &args.path) {
         (Some(file), _) => (calibrate(file), EXIT_FAILED),
         (None, path) => {
@@ -163,7 +163,7 @@ fn calibrate(path: &Path) -> Result<(), String> {
 }
 
 fn write_text(path: &Path, text: &[u8]) -> Result<(), String> {
-    save_text(path, text).map_err(told)
+    save_text(path, text).map_err(with_prefix)
 }
 
 /// Something planned: what ranks have, and what follows.
@@ -175,7 +175,7 @@ struct Planned {
 
 fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(path) = &args.chart {
-        check_picture(path).map_err(told)?;
+        check_picture(path).map_err(with_prefix)?;
     }
     let machine = args
         .machine
@@ -202,12 +202,12 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(path) = &args.chart {
         let weak: Vec<Weak> = all.iter().map(|planned| planned.weak).collect();
         let title = format!("{}, {}", source.case.title, machine.name);
-        let particles = (source.particles.positions.len(), args.per_core);
-        let chart = chart::chart(&title, particles, &rows, &weak);
-        write_chart(&chart, args.width, path).map_err(told)?;
+        let particles = source.particles.positions.len();
+        let chart = chart::chart(&title, particles, args.per_core, &rows, &weak);
+        write_chart(&chart, args.width, path).map_err(with_prefix)?;
     }
-    args.form
-        .tell(|| table::document((&source, &machine), &rows, &files));
+    args.format
+        .print(|| table::document(&source, &machine, &rows, &files));
     Ok(())
 }
 
@@ -288,7 +288,7 @@ impl PlanArgs {
 }
 
 #[allow(clippy::needless_pass_by_value, reason = "to map errors by")]
-fn told(error: PlotError) -> String {
+fn with_prefix(error: PlotError) -> String {
     format!("error: {error}")
 }
 
@@ -317,7 +317,7 @@ fn layout_of(
     layout.ok_or_else(|| "error: the case has no particles".to_owned())
 }
 
-/// What a number of ranks in slabs of some levels has, and what the table tells of it.
+/// The plan for a number of ranks in slabs of some levels, and its row of the table.
 fn row_of(
     source: &Source,
     machine: &Machine,
@@ -345,7 +345,7 @@ fn as_number(count: usize) -> f64 {
     count as f64
 }
 
-/// What files there will be.
+/// The files that there will be.
 pub fn file_lines(files: &Files, machine: &Machine) -> Vec<String> {
     let size = memory::in_words;
     #[allow(

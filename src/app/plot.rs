@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
 
-use super::form::Form;
+use super::output_format::OutputFormat;
 use super::which::Several;
 use movie::MovieArgs;
 use out::{target, write_chart};
@@ -120,7 +120,7 @@ pub struct PlotArgs {
     #[arg(long, value_name = "PX", value_parser = clap::value_parser!(u32).range(400..=20_000))]
     pub width: Option<u32>,
 
-    /// Which snapshots of a run.
+    /// The snapshots of a run.
     #[command(flatten)]
     pub which: Several,
 
@@ -236,17 +236,17 @@ pub struct PlotArgs {
     #[arg(long, value_name = "x|y|xy", requires = "xy", value_parser = ["x", "y", "xy"])]
     pub log: Option<String>,
 
-    /// What belongs to views and radiographs.
+    /// Options of views and radiographs.
     #[command(flatten)]
     pub scene: SceneArgs,
 
-    /// What belongs to movies.
+    /// Options of movies.
     #[command(flatten)]
     pub movie: MovieArgs,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 }
 
 fn history() -> impl TypedValueParser<Value = History> {
@@ -260,9 +260,9 @@ fn history() -> impl TypedValueParser<Value = History> {
 /// # Errors
 /// [`PlotError`] if an input cannot be read, a request cannot be met or a picture not written.
 pub fn run(args: &PlotArgs) -> Result<(), PlotError> {
-    args.form.begin();
+    args.format.begin();
     draw(args)?;
-    args.form.tell(|| json!({}));
+    args.format.print(|| json!({}));
     Ok(())
 }
 
@@ -325,36 +325,36 @@ fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
     write_chart(profiles.chart(), args.width, &path)
 }
 
-/// What is drawn: the source, and what goes with it.
-fn places(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
+/// The source, and what is drawn with it.
+fn sources_of(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
     [&args.source].into_iter().chain(&args.with)
 }
 
 /// The chosen snapshots of each place.
 fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
-    let source = |place: &PathBuf| {
+    let source = |path: &PathBuf| {
         Ok(Source {
-            name: name(place),
-            snapshots: args.which.at(place, usual(args))?,
+            name: name(path),
+            snapshots: args.which.at(path, default_choice(args))?,
         })
     };
-    places(args).map(source).collect()
+    sources_of(args).map(source).collect()
 }
 
-/// What a run or file is called in a legend.
-fn name(place: &Path) -> String {
-    let name = if place.is_dir() {
-        place.file_name()
+/// The name of a run or file in a legend.
+fn name(path: &Path) -> String {
+    let name = if path.is_dir() {
+        path.file_name()
     } else {
-        place.file_stem()
+        path.file_stem()
     };
     name.map_or_else(
-        || place.display().to_string(),
+        || path.display().to_string(),
         |name| name.to_string_lossy().into_owned(),
     )
 }
 
-fn usual(args: &PlotArgs) -> Wanted {
+fn default_choice(args: &PlotArgs) -> Wanted {
     if args.movie.is_wanted() {
         Wanted::All
     } else if args.panels && args.with.is_empty() {
@@ -365,5 +365,5 @@ fn usual(args: &PlotArgs) -> Wanted {
 }
 
 pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
-    args.which.wanted(usual(args))
+    args.which.wanted(default_choice(args))
 }

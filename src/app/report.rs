@@ -1,12 +1,12 @@
-//! `whipple report`: a page that tells a run, or two side by side.
+//! `whipple report`: a page on a run, or on two side by side.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use serde_json::json;
 
-use super::form::{Form, wrote};
-use super::fragments::{FragmentsArgs, tell as tell_fragments};
+use super::fragments::{FragmentsArgs, evaluate as evaluate_fragments};
+use super::output_format::{OutputFormat, wrote};
 use super::results::{Results, ResultsError};
 use super::which::Which;
 use desk::report;
@@ -43,9 +43,9 @@ pub struct ReportArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
 
-    /// How the answer is told.
+    /// Form of the output.
     #[command(flatten)]
-    pub form: Form,
+    pub format: OutputFormat,
 
     /// Open the page with what the desktop opens pages with
     #[arg(long)]
@@ -67,10 +67,10 @@ enum ReportError {
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &ReportArgs) -> u8 {
-    args.form.begin();
+    args.format.begin();
     match write(args) {
         Ok(path) => {
-            args.form.tell(|| json!({ "runs": args.runs }));
+            args.format.print(|| json!({ "runs": args.runs }));
             if args.open {
                 open(&path);
             }
@@ -90,12 +90,12 @@ fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
         [a, b] => report::compare(&folder(a)?, &folder(b)?),
         runs => {
             let folder = folder(&runs[0])?;
-            let asked = report::Asked {
+            let options = report::PageOptions {
                 particles: args.particles as usize,
                 frames: args.frames.map(|frames| frames as usize),
                 fragments: fragments(&folder),
             };
-            report::tell(&folder, &asked)
+            report::render(&folder, &options)
         }
     };
     write_atomically(&path, page.as_bytes())?;
@@ -105,7 +105,7 @@ fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
     Ok(path)
 }
 
-/// Where the page goes.
+/// The path of the page.
 fn target(args: &ReportArgs) -> Result<PathBuf, ReportError> {
     let Some(out) = &args.out else {
         let name = match args.runs.get(1) {
@@ -141,7 +141,7 @@ fn folder(path: &Path) -> Result<RunFolder, ReportError> {
     }
 }
 
-/// What `whipple fragments` tells of the last snapshot of a run that has no table of fragments.
+/// The output of `whipple fragments` for the last snapshot of a run without a table of fragments.
 fn fragments(folder: &RunFolder) -> Result<String, String> {
     if folder.fragments().exists() {
         return Ok(String::new());
@@ -154,14 +154,14 @@ fn fragments(folder: &RunFolder) -> Result<String, String> {
         bridges: false,
         apart: false,
         min_particles: None,
-        form: Form::default(),
+        format: OutputFormat::default(),
         csv: None,
         hdf5: None,
     };
-    tell_fragments(&args).map_err(|error| error.to_string())
+    evaluate_fragments(&args).map_err(|error| error.to_string())
 }
 
-/// Opens the page. That nothing can is no fault: its path has been told.
+/// Opens the page. A failure is ignored: its path has been printed.
 fn open(path: &Path) {
     let opener = if cfg!(target_os = "macos") {
         "open"

@@ -72,28 +72,28 @@ pub fn run(args: &RestartArgs) -> u8 {
             Err(error) => return refused(error),
         };
         let listed = find(comm, &named).map_err(|error| refusal(&error));
-        let found = listed.and_then(|listed| {
+        let loaded = listed.and_then(|(paths, passed_over)| {
             // The store of particles has work for them as soon as a checkpoint is read.
             launch.start_threads(args.common.threads);
-            read(comm, &args.from, named, listed)
+            read(comm, &args.from, named, paths, passed_over)
         });
-        let ended = found.and_then(|found| resume(launch, args, found, lock.as_ref()));
+        let ended = loaded.and_then(|loaded| resume(launch, args, loaded, lock.as_ref()));
         ended.unwrap_or_else(|message| warn(comm, &message))
     })
 }
 
-/// What the command line names.
+/// The paths that the command line names.
 struct Named {
     /// One checkpoint, instead of the newest of the run.
     checkpoint: Option<PathBuf>,
-    /// The run that the checkpoint stands in, if it stands in one.
+    /// The run that has the checkpoint, if any.
     run: Option<RunFolder>,
-    /// Where the run goes on: in that folder or in another.
+    /// The folder in which the run goes on: that one or another.
     folder: RunFolder,
     own: bool,
 }
 
-/// What the command line names, as rank 0 sees it. Collective.
+/// The paths that the command line names, as rank 0 sees them. Collective.
 fn locate(comm: &Comm, args: &RestartArgs) -> Result<Named, OutputError> {
     let from = &args.from;
     let outside = || OutputError::OutsideRun { path: from.clone() };
@@ -106,11 +106,11 @@ fn locate(comm: &Comm, args: &RestartArgs) -> Result<Named, OutputError> {
             std::fs::metadata(from).map_err(OutputError::io("restart", from))?;
             return Err(outside());
         };
-        let place = |path: &Path| path.canonicalize().ok();
+        let canonical = |path: &Path| path.canonicalize().ok();
         let run = run.map(|run| run.path().as_os_str().to_owned());
         let own = run.as_ref().map(|run| {
             let mut out = args.out.iter();
-            out.all(|out| place(out).is_some_and(|out| place(Path::new(run)) == Some(out)))
+            out.all(|out| canonical(out).is_some_and(|out| canonical(Path::new(run)) == Some(out)))
         });
         Ok((run, own.unwrap_or(false)))
     })?;
@@ -160,17 +160,17 @@ fn find(comm: &Comm, named: &Named) -> Result<(Vec<OsString>, Vec<PassedOver>), 
         };
         let all = run.checkpoint_folders()?;
         let broken = checkpoint::list_broken(&run.checkpoints())?;
-        let tell = |path: PathBuf| PassedOver {
+        let passed_over = |path: PathBuf| PassedOver {
             why: format!("{} has no {MANIFEST}", path.display()),
             path: path.into(),
         };
         let all = all.into_iter().map(OsString::from).collect();
-        Ok((all, broken.into_iter().map(tell).collect()))
+        Ok((all, broken.into_iter().map(passed_over).collect()))
     })
 }
 
 /// A checkpoint that could be read, where it goes on, and why newer ones were passed over.
-struct Found {
+struct LoadedCheckpoint {
     named: Named,
     checkpoint: PathBuf,
     particles: ParticleStore,
@@ -187,14 +187,15 @@ fn read(
     comm: &Comm,
     from: &Path,
     named: Named,
-    (paths, mut passed_over): (Vec<OsString>, Vec<PassedOver>),
-) -> Result<Found, String> {
+    paths: Vec<OsString>,
+    mut passed_over: Vec<PassedOver>,
+) -> Result<LoadedCheckpoint, String> {
     for path in paths {
         let checkpoint = PathBuf::from(&path);
         let mut particles = ParticleStore::default();
         let error = match checkpoint::read(comm, &checkpoint, &mut particles) {
             Ok(restored) => {
-                return Ok(Found {
+                return Ok(LoadedCheckpoint {
                     named,
                     checkpoint,
                     particles,
@@ -218,10 +219,10 @@ fn read(
     Err(format!("error: {error}"))
 }
 
-/// What is said of an error that ends the command.
+/// The message for an error that ends the command.
 fn refusal(error: &OutputError) -> String {
-    let told = error.is_damage() || error.is_other_version();
-    let hint = if told {
+    let explained = error.is_damage() || error.is_other_version();
+    let hint = if explained {
         ""
     } else {
         "; nothing is changed: restart when it can be read, or name an older checkpoint"
@@ -233,38 +234,41 @@ fn refusal(error: &OutputError) -> String {
 fn resume(
     launch: &Launch,
     args: &RestartArgs,
-    found: Found,
+    loaded: LoadedCheckpoint,
     lock: Option<&RunLock>,
 ) -> Result<u8, String> {
     let comm = launch.comm;
-    let place = found.checkpoint.display().to_string();
-    let own = Some(&found.named.folder).filter(|_| found.named.own);
-    let (input, set) = (&found.restored.input, &args.set);
-    let settled = saved_case::resolve(comm, own, &place, input, set, args.accept_case)?;
+    let name = loaded.checkpoint.display().to_string();
+    let own = Some(&loaded.named.folder).filter(|_| loaded.named.own);
+    let (input, set) = (&loaded.restored.input, &args.set);
+    let settled = saved_case::resolve(comm, own, &name, input, set, args.accept_case)?;
     let case = &settled.case;
     snapshot::quantities(&case.output.fields).map_err(|error| format!("error: {error}"))?;
     if let Some(message) = args.common.shortage(comm, case) {
         return Err(message);
     }
-    let state = found.state()?;
-    let closed = comm.any(comm.is_root() && is_closed(&found.checkpoint));
+    let state = loaded.state()?;
+    let closed = comm.any(comm.is_root() && is_closed(&loaded.checkpoint));
     if closed && let Some(reason) = nothing_to_do(case, &state, args.common.until) {
         if comm.is_root() {
-            say(&format!("nothing to do: {place} is at {reason}"));
+            say(&format!("nothing to do: {name} is at {reason}"));
         }
         comm.barrier();
         return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
     warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
-    warnings.extend(found.tell_passed_over());
-    let passed = found.passed_over.iter().map(|passed| (&passed.path).into());
+    warnings.extend(loaded.warnings());
+    let passed = loaded
+        .passed_over
+        .iter()
+        .map(|passed| (&passed.path).into());
     let origin = Origin {
         passed_over: passed.collect(),
-        checkpoint: found.checkpoint,
-        particles: found.particles,
-        folder: found.named.folder,
-        own: found.named.own,
+        checkpoint: loaded.checkpoint,
+        particles: loaded.particles,
+        folder: loaded.named.folder,
+        own: loaded.named.own,
     };
     let (common, force) = (&args.common, args.force);
     Ok(go_on(
@@ -272,7 +276,7 @@ fn resume(
     ))
 }
 
-impl Found {
+impl LoadedCheckpoint {
     /// The state of the run.
     fn state(&self) -> Result<RunState, String> {
         state_of(&self.restored).map_err(|error| {
@@ -285,8 +289,8 @@ impl Found {
         })
     }
 
-    /// What is said of the checkpoints that were passed over.
-    fn tell_passed_over(&self) -> impl Iterator<Item = String> {
+    /// The messages on the checkpoints that were passed over.
+    fn warnings(&self) -> impl Iterator<Item = String> {
         let fate = if self.named.own {
             "; it is set aside, its name now ends with .damaged"
         } else {
@@ -297,7 +301,7 @@ impl Found {
     }
 }
 
-/// Whether the run of a checkpoint was left in good order, with its summary and status.
+/// `true` if the run of a checkpoint was closed properly, with its summary and status.
 fn is_closed(checkpoint: &Path) -> bool {
     let status = RunFolder::of_checkpoint(checkpoint).and_then(|run| run.status().ok());
     status.is_some_and(|status| matches!(status.state, Phase::Finished | Phase::Stopped))

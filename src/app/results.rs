@@ -1,4 +1,4 @@
-//! What a path of the command line is: a run, a snapshot or a checkpoint.
+//! The results that a path of the command line names: a run, a snapshot or a checkpoint.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub enum Results {
     Checkpoint(Content),
 }
 
-/// Why a path cannot be looked at.
+/// Why a path cannot be examined.
 #[derive(Debug, thiserror::Error)]
 pub enum ResultsError {
     /// It cannot be read.
@@ -31,16 +31,16 @@ pub enum ResultsError {
     /// It is none of ours.
     #[error("{} is neither a run folder, a snapshot nor a checkpoint", .0.display())]
     Unknown(PathBuf),
-    /// Two paths of different kinds.
+    /// Two paths of different types.
     #[error("{a} is a {a_kind} and {b} is a {b_kind}; give two of one kind")]
     Kinds {
         /// The first path.
         a: String,
-        /// What it is.
+        /// The type of the first.
         a_kind: &'static str,
         /// The second path.
         b: String,
-        /// What that is.
+        /// The type of the other.
         b_kind: &'static str,
     },
     /// A text of a run cannot be understood.
@@ -48,7 +48,7 @@ pub enum ResultsError {
     Text {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
 }
@@ -76,7 +76,7 @@ impl Results {
         }
     }
 
-    /// What it is, for people.
+    /// The type of the results, for people.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -87,7 +87,7 @@ impl Results {
     }
 }
 
-/// What is said of a snapshot of a part of the model where all of it is needed.
+/// The message for a snapshot of a part of the model if all of it is needed.
 #[must_use]
 pub fn only_part(part: &str) -> String {
     format!("it holds a part of the model alone ({part}); give a snapshot of all particles")
@@ -105,14 +105,14 @@ pub fn component_names(components: usize, vtk: bool) -> &'static [&'static str] 
     }
 }
 
-/// The status of a run, and who has its folder where it says that the run goes on and `asks` for that. `Nobody` is
-/// said of a killed run alone, not of one that has ended in between.
-pub(super) fn standing(
+/// The status of a run, and the holder of its folder if the status says `running` and `needs` asks
+/// for that. `Nobody` is returned for a killed run alone, not for one that has ended in between.
+pub(super) fn status_and_presence(
     folder: &RunFolder,
-    asks: impl Fn(&Status) -> bool,
+    needs_presence: impl Fn(&Status) -> bool,
 ) -> Result<(Status, Option<Presence>), OutputError> {
     let mut status = folder.status()?;
-    while status.state == Phase::Running && asks(&status) {
+    while status.state == Phase::Running && needs_presence(&status) {
         let presence = Presence::of(folder.path());
         if !matches!(presence, Presence::Nobody(_)) {
             return Ok((status, Some(presence)));
@@ -127,16 +127,16 @@ pub(super) fn standing(
     Ok((status, None))
 }
 
-/// What `running` in a status means: a run that is killed cannot change it.
+/// The meaning of `running` in a status: a run that is killed cannot change it.
 pub(super) fn running(presence: &Presence) -> String {
     match presence {
-        Presence::Held(Some(who)) => format!("running ({who})"),
+        Presence::Held(Some(holder)) => format!("running ({holder})"),
         Presence::Held(None) => "running".to_owned(),
         Presence::Nobody(_) => {
             "was running; killed or lost (no process holds the folder)".to_owned()
         }
-        Presence::Unclear(who) => {
-            format!("running, or killed or lost ({who}, which cannot be seen from this host)")
+        Presence::Unclear(holder) => {
+            format!("running, or killed or lost ({holder}, which cannot be seen from this host)")
         }
     }
 }
@@ -147,18 +147,18 @@ mod tests {
 
     #[test]
     fn a_run_that_ends_while_it_is_looked_at_is_not_killed() {
-        let place = tempfile::tempdir().unwrap();
-        let folder = RunFolder::at(place.path());
+        let dir = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(dir.path());
         let write = |state| folder.write_status(&Status::new(state, 7, 1e-6)).unwrap();
         write(Phase::Running);
-        let (status, presence) = standing(&folder, |_| true).unwrap();
+        let (status, presence) = status_and_presence(&folder, |_| true).unwrap();
         assert_eq!(status.state, Phase::Running);
         assert!(matches!(presence, Some(Presence::Nobody(None))));
         let ends = |_: &Status| {
             write(Phase::Finished);
             true
         };
-        let (status, presence) = standing(&folder, ends).unwrap();
+        let (status, presence) = status_and_presence(&folder, ends).unwrap();
         assert_eq!(status.state, Phase::Finished);
         assert!(presence.is_none());
     }

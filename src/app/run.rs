@@ -52,7 +52,7 @@ pub fn run(args: &RunArgs) -> u8 {
     with_ranks(|launch| {
         let comm = launch.comm;
         let (path, text) = match read_case(comm, &args.case) {
-            Ok(found) => found,
+            Ok(read) => read,
             Err(message) => return warn(comm, &message),
         };
         let case = match input::parse(&path.display().to_string(), &text, &args.set) {
@@ -78,14 +78,14 @@ pub fn run(args: &RunArgs) -> u8 {
 
 /// The case file and its text, read by rank 0 for all.
 fn read_case(comm: &Comm, path: &Path) -> Result<(PathBuf, String), String> {
-    // The first byte tells whether the rest is path and text or an error.
+    // The first byte says if the rest is path and text or an error.
     let mut bytes = Vec::new();
     if comm.is_root() {
-        let (kind, text) = match input::text(path) {
+        let (tag, text) = match input::text(path) {
             Ok((path, text)) => (0, format!("{}\0{text}", path.display())),
             Err(error) => (1, error.to_string()),
         };
-        bytes.push(kind);
+        bytes.push(tag);
         bytes.extend_from_slice(text.as_bytes());
     }
     comm.broadcast(&mut bytes);

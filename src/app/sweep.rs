@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::form::{self, Form, wrote};
+use super::output_format::{self, OutputFormat, wrote};
 use super::plot::out::{PictureFormat, write_chart};
 use super::shell::quoted;
 use desk::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
@@ -43,7 +43,7 @@ pub struct Shares {
     threads: Option<u16>,
 
     #[command(flatten)]
-    form: Form,
+    format: OutputFormat,
 }
 
 /// Run a case at many points: a table of answers, a limit
@@ -135,18 +135,18 @@ pub struct ConvergeArgs {
 /// Runs `whipple sweep`; returns the exit code.
 #[must_use]
 pub fn run(args: &SweepArgs) -> u8 {
-    args.shares.form.begin();
-    told(sweep(args))
+    args.shares.format.begin();
+    exit_code(sweep(args))
 }
 
 /// Runs `whipple converge`; returns the exit code.
 #[must_use]
 pub fn converge(args: &ConvergeArgs) -> u8 {
-    args.shares.form.begin();
-    told(converged(args))
+    args.shares.format.begin();
+    exit_code(converged(args))
 }
 
-fn told(result: Result<u8, SweepError>) -> u8 {
+fn exit_code(result: Result<u8, SweepError>) -> u8 {
     result.unwrap_or_else(|error| {
         warn(&error.to_string());
         match error {
@@ -186,7 +186,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         write_atomically(&path, &script(&folder, &args.shares, sweep.count()?))?;
         wrote(&path, ": give it to sbatch, then run");
         say(&format!("  whipple sweep {}", folder.display()));
-        args.shares.form.tell(|| json!({}));
+        args.shares.format.print(|| json!({}));
         return Ok(0);
     }
     let tally = sweep.run(jobs, say)?;
@@ -209,7 +209,7 @@ fn converged(args: &ConvergeArgs) -> Result<u8, SweepError> {
             .folder
             .set_file_name(format!("{}-converge", name(&args.case)));
     }
-    let bodies = definition.settled()?;
+    let bodies = definition.resolved()?;
     let bodies = bodies.get("body").and_then(toml::Value::as_array);
     let own = |body: &&toml::Value| body.get("spacing").is_some();
     if let Some(body) = bodies.into_iter().flatten().find(own) {
@@ -272,11 +272,11 @@ impl Shares {
             parts.push(format!("{open} open"));
         }
         say(&parts.join(", "));
-        if self.form.is_json() {
+        if self.format.is_json() {
             let text = fs::read_to_string(table).map_err(OutputError::io("read", table))?;
             let sheet = Sheet::parse(&text).map_err(SweepError::Typed)?;
-            self.form.tell(|| {
-                let mut document = form::table(&sheet);
+            self.format.print(|| {
+                let mut document = output_format::table(&sheet);
                 document["points"] =
                     json!({ "finished": answered, "failed": failed, "open": open });
                 document
@@ -331,7 +331,7 @@ impl Shares {
     }
 }
 
-/// A job array whose tasks run a point each.
+/// A job array with a task for each point.
 fn script(folder: &Path, shares: &Shares, points: usize) -> Vec<u8> {
     let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("whipple"));
     let (ranks, threads) = (shares.ranks, shares.threads.unwrap_or(1));

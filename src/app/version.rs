@@ -8,7 +8,7 @@ use comm;
 use files::output::{VERSION, commit, h5};
 use numerics::dispatch::{Instructions, available, instructions};
 
-/// The long form, if that is what the command line asks for; `-V` is the short one.
+/// The long form, if the command line asks for it; `-V` is the short one.
 pub fn asked(error: &clap::Error) -> Option<String> {
     let is_long = |word: OsString| word == "--version";
     let asked = error.kind() == ErrorKind::DisplayVersion && std::env::args_os().any(is_long);

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use console::Term;
 
-use super::results::{running, standing};
+use super::results::{running, status_and_presence};
 use files::output::{OutputError, Phase, Presence, RunFolder, Status};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
 use files::run::say::warn;
@@ -40,7 +40,7 @@ pub struct WatchArgs {
     every: u32,
 }
 
-/// Columns where there is no terminal that tells.
+/// Columns if the terminal does not give any.
 const WIDTH: usize = 80;
 
 /// Runs the command; returns the exit code.
@@ -72,12 +72,12 @@ pub fn run(args: &WatchArgs) -> u8 {
     }
 }
 
-/// What is seen of a run.
+/// The state of a run, as read.
 struct Seen {
     status: Status,
-    /// Where it stands, in words.
-    standing: String,
-    /// Seconds since its status was written, if that can be told.
+    /// The state in words.
+    state: String,
+    /// Seconds since its status was written, if known.
     age: Option<f64>,
     /// Exit code of the run, if it is over.
     code: Option<u8>,
@@ -85,7 +85,7 @@ struct Seen {
 
 /// Looks at a run.
 fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
-    let (status, presence) = standing(folder, is_late)?;
+    let (status, presence) = status_and_presence(folder, is_late)?;
     let name = one_line(&folder.path().display().to_string()).into_owned();
     let reason = status.reason.as_deref().unwrap_or_default();
     let reason = if reason.is_empty() {
@@ -94,7 +94,7 @@ fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
         format!(" ({})", one_line(reason))
     };
     let code = status.exit_code;
-    let (told, code) = match status.state {
+    let (state, code) = match status.state {
         Phase::Running => match &presence {
             Some(presence) => {
                 let lost = matches!(presence, Presence::Nobody(_));
@@ -110,21 +110,21 @@ fn look(folder: &RunFolder) -> Result<Seen, OutputError> {
         Phase::Failed => (format!("failed{reason}"), Some(code.unwrap_or(EXIT_FAILED))),
     };
     Ok(Seen {
-        standing: format!("{name}: {told}"),
+        state: format!("{name}: {state}"),
         age: age(&status),
         status,
         code,
     })
 }
 
-/// Seconds since a status was written, if that can be told.
+/// Seconds since a status was written, if known.
 fn age(status: &Status) -> Option<f64> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).ok()?;
     let written = Duration::from_secs(status.outlook.as_ref()?.written);
     now.checked_sub(written).map(|age| age.as_secs_f64())
 }
 
-/// Whether a run has not told of itself for longer than a sound one would take.
+/// `true` if the status of a run is older than that of a sound run would be.
 fn is_late(status: &Status) -> bool {
     const PATIENCE: f64 = 5.0;
     let step = status.outlook.as_ref().map_or(0.0, |o| o.seconds_per_step);
@@ -143,7 +143,7 @@ fn draw(lines: &[String], over: usize) {
         _ => (format!("\x1b[{over}A"), "\x1b[2K"),
     };
     let lines = lines.iter().map(|line| format!("{erase}{line}\n"));
-    // Where there are fewer than before, the rest goes.
+    // If there are fewer than before, the rest is erased.
     let rest = if over > 0 { "\x1b[J" } else { "" };
     let text = format!("{back}{}{rest}", lines.collect::<String>());
     let mut stdout = std::io::stdout().lock();

@@ -1,4 +1,4 @@
-//! Which snapshots of a run a command is asked for.
+//! The snapshots of a run that a command is asked for.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub struct Which {
 }
 
 impl Which {
-    /// Whether one is named.
+    /// `true` if one is named.
     #[must_use]
     pub fn any(&self) -> bool {
         self.at.is_some() || self.snapshot.is_some()
@@ -62,17 +62,17 @@ pub struct Several {
 }
 
 impl Several {
-    /// Whether any are named.
+    /// `true` if any are named.
     #[must_use]
     pub fn any(&self) -> bool {
         self.all || !self.time.is_empty() || !self.index.is_empty()
     }
 
-    /// As the choice among snapshots knows it; `usual` if none are named.
+    /// As the choice among snapshots takes it; `default` if none are named.
     ///
     /// # Errors
     /// [`PlotError::Quantity`] if a time cannot be read.
-    pub fn wanted(&self, usual: Wanted) -> Result<Wanted, PlotError> {
+    pub fn wanted(&self, default: Wanted) -> Result<Wanted, PlotError> {
         if self.all {
             Ok(Wanted::All)
         } else if !self.time.is_empty() {
@@ -81,7 +81,7 @@ impl Several {
         } else if !self.index.is_empty() {
             Ok(Wanted::Indices(self.index.clone()))
         } else {
-            Ok(usual)
+            Ok(default)
         }
     }
 
@@ -89,15 +89,15 @@ impl Several {
     ///
     /// # Errors
     /// [`PlotError`] if there are none, or if a file is to be chosen from.
-    pub fn at(&self, place: &Path, usual: Wanted) -> Result<Vec<PathBuf>, PlotError> {
-        if place.is_dir() {
-            choose(&snapshots(place)?, &self.wanted(usual)?)
+    pub fn at(&self, path: &Path, default: Wanted) -> Result<Vec<PathBuf>, PlotError> {
+        if path.is_dir() {
+            choose(&snapshots(path)?, &self.wanted(default)?)
         } else if self.any() {
             Err(PlotError::Options(
                 "--time, --index and --all choose among the snapshots of a run: give its folder",
             ))
         } else {
-            Ok(vec![place.to_owned()])
+            Ok(vec![path.to_owned()])
         }
     }
 }

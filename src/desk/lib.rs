@@ -1,4 +1,5 @@
-//! What is made of results, and formulas beside them: pictures, pages, exports, sweeps, ballistic limits.
+//! Products of results, and formulas to compare them with: pages, exports, sweeps, ballistic
+//! limits.
 
 pub mod ballistic;
 pub mod export;

@@ -7,15 +7,15 @@ use numerics::vector::dot;
 /// longitudinal wave that comes back from the end of a zone that it meets at a right angle.
 const STRENGTH: f64 = 6.907_755_278_982_137;
 
-/// A zone along outer faces of a body in which matter is slowed down and its stress relaxes at the
-/// same rate.
+/// A zone along outer faces of a body in which particles are slowed down and their stress relaxes
+/// at the same rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Absorber {
     /// Name in reports.
     pub name: String,
     /// Index into [`super::Case::bodies`]; no other zone has the same.
     pub body: usize,
-    /// How far the zone reaches into the body from each face (m).
+    /// Depth of the zone below each face (m).
     pub depth: f64,
     /// Outer faces.
     pub faces: Vec<OuterFace>,
@@ -37,14 +37,13 @@ pub enum OuterFace {
         centre: [f64; 3],
         /// Direction of the line.
         axis: Option<Axis>,
-        /// How far (m).
+        /// Its radius (m).
         radius: f64,
     },
 }
 
 impl OuterFace {
-    /// How far inside the face the points of a box between two corners (m) are, at least and at
-    /// most (m).
+    /// Least and largest depth (m) below the face of the points of a box between two corners (m).
     fn depths(&self, lower: &[f64; 3], upper: &[f64; 3]) -> [f64; 2] {
         match self {
             Self::Plane { normal, position } => [true, false].map(|foremost| {
@@ -93,14 +92,14 @@ impl Absorber {
         STRENGTH * speed / self.depth * profile
     }
 
-    /// Whether a point of the box between two corners (m) may lie outside of the zone.
+    /// `true` if a point of the box between two corners (m) may lie outside of the zone.
     #[must_use]
     pub fn may_spare(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
         let mut faces = self.faces.iter();
         faces.all(|face| face.depths(lower, upper)[1] >= self.depth)
     }
 
-    /// Whether a point of the box between two corners (m) may lie in the zone.
+    /// `true` if a point of the box between two corners (m) may lie in the zone.
     #[must_use]
     pub fn may_hold(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
         let mut faces = self.faces.iter();

@@ -42,6 +42,6 @@ impl Axis {
 pub struct SymmetryPlane {
     /// Normal of the plane.
     pub axis: Axis,
-    /// Where the plane cuts that axis (m).
+    /// Position of the plane on that axis (m).
     pub position: f64,
 }

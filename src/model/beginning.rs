@@ -1,4 +1,4 @@
-//! What one particle begins with, and whether nature knows such.
+//! The initial state of one particle, and its physical range.
 
 use super::readable::shown;
 use super::{Body, Case, Heat, Place, Profile, Quantity, Vec3};
@@ -9,10 +9,10 @@ const LIGHT: f64 = 299_792_458.0;
 const HOTTEST: f64 = 1e9;
 /// No specific energy is as large (J/kg): that of all the mass.
 const MOST_ENERGY: f64 = 9e16;
-/// More than any matter bears.
+/// More than any material bears.
 const MOST_STRAIN: f64 = 1e3;
 
-/// What one particle begins with.
+/// The initial state of one particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beginning {
     /// Velocity (m/s).
@@ -33,7 +33,7 @@ impl Beginning {
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let speed = self.velocity.norm();
         let temperature = self.temperature.unwrap_or(1.0);
-        // What is no number is in no range.
+        // NaN is in no range.
         if !(0.0..LIGHT).contains(&speed) {
             Some(("velocity", shown(speed, "m/s"), "slower than light"))
         } else if !(temperature > 0.0 && temperature < HOTTEST) {
@@ -84,7 +84,7 @@ impl Case {
         }
     }
 
-    /// What a particle of a body at `position` (m) begins with.
+    /// The initial state of a particle of a body at `position` (m).
     #[must_use]
     pub fn beginning(&self, body: &Body, position: &Vec3) -> Beginning {
         let place = Place::new(position, &body.shape.centre());
@@ -98,8 +98,8 @@ impl Case {
         }
     }
 
-    /// What the particle of a site of a body begins with: what a file tells of it goes before what
-    /// is said of the whole body.
+    /// The initial state of the particle of a site of a body: values of a file take precedence over
+    /// those of the whole body.
     #[must_use]
     pub fn beginning_of(&self, body: &Body, position: &Vec3, index: u64) -> Beginning {
         let mut begins = self.beginning(body, position);
@@ -114,8 +114,8 @@ impl Case {
             (Quantity::SpecificEnergy, &mut begins.specific_energy),
             (Quantity::PlasticStrain, &mut begins.plastic_strain),
         ] {
-            if let Some(&[told]) = cloud.get(quantity, row) {
-                *value = told;
+            if let Some(&[given]) = cloud.get(quantity, row) {
+                *value = given;
             }
         }
         begins

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Form, Grading, Initial, Motion, Place, Placement, Quantity, Shape, Solid, Vec3, cube,
+    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid, Vec3,
+    cube,
 };
 
-/// How particles are stacked.
+/// The arrangement of particles.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LatticeKind {
@@ -31,15 +32,15 @@ pub enum LatticeKind {
     Glass,
 }
 
-/// A lattice of particles: its kind, spacing and orientation.
+/// A lattice of particles: its arrangement, spacing and orientation.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Lattice {
     /// Kind of stacking.
     pub kind: LatticeKind,
-    /// Particle spacing Δp (m): there is one particle in a volume Δp^d, for every kind (but for
-    /// what rounding leaves of rings). Where it is graded, the finest.
+    /// Particle spacing Δp (m): there is one particle in a volume Δp^d, for every arrangement (but
+    /// for the rounding of rings). If it is graded, the finest.
     pub spacing: f64,
-    /// How the spacing grows, if it does: of glass alone.
+    /// The growth of the spacing, if any: of glass alone.
     pub grading: Option<Grading>,
     /// Smallest and largest size of particles against those of the spacing, unless all are alike.
     pub sizes: Option<[f64; 2]>,
@@ -47,9 +48,9 @@ pub struct Lattice {
     pub angle: f64,
     /// That axis; z if absent.
     pub axis: Option<Vec3>,
-    /// Whether a cubic lattice is stretched by axis until it fills a box exactly.
+    /// `true` if a cubic lattice is stretched by axis until it fills a box exactly.
     pub fit: bool,
-    /// Which of the fillings of its kind, for those that are drawn at random.
+    /// Seed of a filling that is drawn at random.
     pub seed: u64,
     /// Volume of one particle (m³; m² or m in two or one dimensions), if not Δp^d, so that all
     /// together fill the volume of the shape; where the spacing is graded, of a finest one.
@@ -109,7 +110,7 @@ pub struct Body {
     pub lattice: Lattice,
     /// Initial density (kg/m³), if not the material's reference density.
     pub density: Option<f64>,
-    /// What else its particles begin with.
+    /// The rest of the initial state of its particles.
     pub initial: Initial,
     /// Initial velocity of its centre (m/s); where that varies, the middle of all.
     pub velocity: Vec3,
@@ -130,18 +131,18 @@ impl Body {
         self.smoothing_length * largest
     }
 
-    /// Its particles and where their origin stands (m), if a file gives them.
+    /// Its particles and the position of their origin (m), if a file gives them.
     #[must_use]
     pub fn cloud(&self) -> Option<(&Arc<Cloud>, &Vec3)> {
         match &self.shape {
-            Shape::Solid(Solid::Form(Form::Cloud(cloud), Placement { at, .. })) => {
+            Shape::Solid(Solid::Primitive(Primitive::Cloud(cloud), Placement { at, .. })) => {
                 Some((cloud, at))
             }
             _ => None,
         }
     }
 
-    /// Whether a file tells a quantity of its particles.
+    /// `true` if a file gives a quantity of its particles.
     #[must_use]
     pub fn holds(&self, quantity: Quantity) -> bool {
         let cloud = self.cloud();

@@ -6,7 +6,7 @@ use super::{SurfaceFile, Vec3};
 
 macro_rules! quantities {
     ($($(#[$doc:meta])+ $quantity:ident = $name:literal, $components:literal, $powers:expr;)+) => {
-        /// What a file may tell of its particles.
+        /// A quantity that a file may give of its particles.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Quantity { $($(#[$doc])+ $quantity,)+ }
 
@@ -20,7 +20,7 @@ macro_rules! quantities {
                 match self { $(Self::$quantity => $name,)+ }
             }
 
-            /// How many numbers one is.
+            /// The number of components.
             #[must_use]
             pub fn components(self) -> usize {
                 match self { $(Self::$quantity => $components,)+ }
@@ -55,7 +55,7 @@ quantities! {
     PlasticStrain = "plastic_strain", 1, [0; 5];
     /// Damage.
     Damage = "damage", 1, [0; 5];
-    /// Elastic energy that was held when the matter failed (J/kg).
+    /// Elastic energy that was held when the material failed (J/kg).
     FailureEnergy = "failure_energy", 1, [2, 0, -2, 0, 0];
     /// Elastic displacement that no linear field explains (m).
     HourglassDisplacement = "hourglass_displacement", 3, [1, 0, 0, 0, 0];
@@ -89,10 +89,10 @@ impl Quantity {
 /// Sizes of particles that differ by no more than this are the same but for rounding.
 const ALIKE: f64 = 1e-6;
 
-/// Particles in rows, with what the file tells of each beside its place and volume.
+/// Particles in rows, with the quantities of a file beside their positions and volumes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cloud {
-    /// Where they come from.
+    /// Their file.
     pub file: SurfaceFile,
     dimension: usize,
     positions: Vec<[f64; 3]>,
@@ -103,7 +103,7 @@ pub struct Cloud {
 
 impl Cloud {
     /// Of positions (m), whose components beyond the dimension are zero, of as many volumes (m³; m²
-    /// or m in two or one dimensions), and of what else is held, row after row, in SI units.
+    /// or m in two or one dimensions), and of other quantities, row after row, in SI units.
     #[must_use]
     pub fn new(
         file: SurfaceFile,
@@ -161,7 +161,7 @@ impl Cloud {
         (most / least > 1.0 + ALIKE).then_some([least, most])
     }
 
-    /// What is held beside them, in the order of [`Quantity::ALL`].
+    /// The other quantities, in the order of [`Quantity::ALL`].
     pub fn quantities(&self) -> impl Iterator<Item = Quantity> {
         self.held.iter().map(|(quantity, _)| *quantity)
     }
@@ -182,8 +182,8 @@ impl Cloud {
             .map(|(_, values)| values.as_slice())
     }
 
-    /// Rows in the order of the tree: those near each other stand near each other, and halves of
-    /// halves down to a few rows are its nodes.
+    /// Rows in the order of the tree: neighbours are near each other, and halves of halves down to
+    /// a few rows are its nodes.
     #[must_use]
     pub fn order(&self) -> &[u32] {
         self.tree.order()

@@ -29,11 +29,11 @@ macro_rules! contact_modes {
 pub struct ContactPair {
     /// Two indices into [`super::Case::bodies`].
     pub bodies: [usize; 2],
-    /// What happens where they meet.
+    /// The contact where they meet.
     pub mode: ContactMode,
 }
 
-/// What every mode with forces tells of itself.
+/// The properties of every mode with forces.
 pub trait ContactLaw {
     /// Stiffness of the forces, relative to that of the materials.
     fn stiffness(&self) -> f64;
@@ -43,8 +43,8 @@ pub trait ContactLaw {
         None
     }
 
-    /// Whether it needs sums over the particles of a body, which rigid bodies and stress points do
-    /// without.
+    /// `true` if it needs sums over the particles of a body, which rigid bodies and stress points
+    /// do without.
     fn needs_sums(&self) -> bool {
         false
     }
@@ -52,7 +52,7 @@ pub trait ContactLaw {
 
 macro_rules! declare {
     ($($name:ident: $Mode:ident,)+) => {
-        /// What two bodies do to each other.
+        /// The contact of two bodies.
         #[derive(Debug, Clone, PartialEq)]
         pub enum ContactMode {
             /// The bodies do not see each other.
@@ -77,7 +77,7 @@ macro_rules! declare {
         impl ContactClass {
             /// All modes with forces.
             pub const ALL: &[Self] = &[$(Self::$Mode),+];
-            /// How many there are.
+            /// The number of modes.
             pub const COUNT: usize = Self::ALL.len();
         }
 
@@ -107,7 +107,7 @@ macro_rules! declare {
                 }
             }
 
-            /// What it tells of itself, if it has forces.
+            /// Its properties, if it has forces.
             #[must_use]
             pub fn law(&self) -> Option<&dyn ContactLaw> {
                 match self {
@@ -127,8 +127,8 @@ impl ContactMode {
         self.law()?.resistance()
     }
 
-    /// Whether it needs sums over the particles of a body, which rigid bodies and stress points do
-    /// without.
+    /// `true` if it needs sums over the particles of a body, which rigid bodies and stress points
+    /// do without.
     #[must_use]
     pub fn needs_sums(&self) -> bool {
         let of_law = |law: &dyn ContactLaw| law.needs_sums();
@@ -156,14 +156,14 @@ pub struct SelfContact {
 }
 
 impl SelfContact {
-    /// What two fragments of a body do to each other.
+    /// The contact of two fragments of a body.
     #[must_use]
     pub fn mode(&self) -> ContactMode {
         ContactMode::Overlap(self.overlap)
     }
 }
 
-/// What bodies in contact do against their relative motion.
+/// The resistance of bodies in contact against their relative motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Resistance {
     /// Coefficient of friction of faces that stick.
@@ -175,7 +175,7 @@ pub struct Resistance {
 }
 
 impl Resistance {
-    /// Whether there is any.
+    /// `true` if there is any.
     #[must_use]
     pub fn is_any(&self) -> bool {
         self.static_friction > 0.0 || self.damping > 0.0

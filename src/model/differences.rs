@@ -1,4 +1,4 @@
-//! Where two trees of values differ, by key.
+//! Differences of two trees of values, by key.
 
 use serde_json::Value;
 
@@ -7,21 +7,21 @@ use serde_json::Value;
 pub struct Difference {
     /// Keys from the root: `body[0].size`.
     pub path: String,
-    /// What the one has.
+    /// The value of the one.
     pub a: Option<Value>,
-    /// What the other has.
+    /// The value of the other.
     pub b: Option<Value>,
 }
 
 /// All leaves in which two trees differ, in the order of the first. Texts are compared, so that −0 and 0 differ.
 #[must_use]
 pub fn differences(a: &Value, b: &Value) -> Vec<Difference> {
-    let mut found = Vec::new();
-    walk("", Some(a), Some(b), &mut found);
-    found
+    let mut differences = Vec::new();
+    walk("", Some(a), Some(b), &mut differences);
+    differences
 }
 
-fn walk(path: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<Difference>) {
+fn walk(path: &str, a: Option<&Value>, b: Option<&Value>, differences: &mut Vec<Difference>) {
     let below = |key: &str| {
         if path.is_empty() {
             key.to_owned()
@@ -32,17 +32,17 @@ fn walk(path: &str, a: Option<&Value>, b: Option<&Value>, found: &mut Vec<Differ
     match (a, b) {
         (Some(Value::Object(a)), Some(Value::Object(b))) => {
             for key in a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))) {
-                walk(&below(key), a.get(key), b.get(key), found);
+                walk(&below(key), a.get(key), b.get(key), differences);
             }
         }
         (Some(Value::Array(a)), Some(Value::Array(b))) => {
             for k in 0..a.len().max(b.len()) {
-                walk(&format!("{path}[{k}]"), a.get(k), b.get(k), found);
+                walk(&format!("{path}[{k}]"), a.get(k), b.get(k), differences);
             }
         }
         (a, b) => {
             if a.map(Value::to_string) != b.map(Value::to_string) {
-                found.push(Difference {
+                differences.push(Difference {
                     path: path.to_owned(),
                     a: a.cloned(),
                     b: b.cloned(),

@@ -1,4 +1,4 @@
-//! How far a point is from a shape, and how far a shape reaches.
+//! The distance of a point from a shape, and the extent of a shape.
 
 use super::{Shape, Vec3};
 
@@ -44,7 +44,7 @@ impl Shape {
         }
     }
 
-    /// What [`Self::distance`] (m) is at least in the box between two corners (m).
+    /// The least [`Self::distance`] (m) in the box between two corners (m).
     #[must_use]
     pub fn least_distance(&self, lower: &[f64; 3], upper: &[f64; 3], dimension: usize) -> f64 {
         let middle = match self {

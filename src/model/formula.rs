@@ -10,8 +10,8 @@ const DEPTH: usize = 32;
 /// Whole powers up to this are products.
 const MOST_PRODUCTS: f64 = 16.0;
 
-/// What a formula knows of a place (m): its coordinates, its distance from the centre of the body's
-/// shape, and the coordinates of that.
+/// The arguments of a formula at a place (m): its coordinates, its distance from the centre of the
+/// body's shape, and the coordinates of that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place([f64; 7]);
 

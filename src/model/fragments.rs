@@ -1,15 +1,15 @@
-//! When fragments are told in a run, and what a fragment is.
+//! The times of fragments in a run, and the rule of a fragment.
 
 use serde::Deserialize;
 
-/// What belongs to fragments.
+/// The particles that belong to fragments.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Include {
-    /// What has not failed.
+    /// Those that have not failed.
     #[default]
     Intact,
-    /// All matter.
+    /// All.
     All,
 }
 
@@ -20,11 +20,11 @@ pub struct FragmentOptions {
     pub every: Option<f64>,
     /// Largest distance of linked particles, over the mean of their sizes at the start.
     pub link: f64,
-    /// What belongs to fragments.
+    /// The particles that belong to fragments.
     pub include: Include,
-    /// Whether a single particle joins what hangs together by nothing else.
+    /// `true` if a single particle joins fragments that nothing else joins.
     pub bridges: bool,
-    /// Whether particles of different bodies are linked.
+    /// `true` if particles of different bodies are linked.
     pub across_bodies: bool,
     /// Least number of particles of a fragment; the rest is dust.
     pub min_particles: u64,
@@ -49,7 +49,7 @@ impl Default for FragmentOptions {
 const DIAGONAL: f64 = 1.42;
 
 impl FragmentOptions {
-    /// What looks like a mistake in a model of so many dimensions, if anything does.
+    /// A likely mistake in a model of so many dimensions, if any.
     #[must_use]
     pub fn doubt(&self, dimension: usize) -> Option<String> {
         if self.link >= DIAGONAL || self.bridges || dimension == 1 {

@@ -1,15 +1,15 @@
 //! Gauges and witness planes.
 
-/// A gauge: what matter holds at a place.
+/// A gauge: the state of the material at a place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gauge {
     /// Name in tables.
     pub name: String,
-    /// Where it is, or begins (m).
+    /// Its position, or the initial one (m).
     pub at: [f64; 3],
-    /// Whether the particle nearest at the start carries it.
+    /// `true` if the particle nearest at the start carries it.
     pub moves: bool,
-    /// The body whose matter it reads; all that deform if absent.
+    /// The body that it reads; all that deform if absent.
     pub body: Option<usize>,
     /// Names of what it reads, at least one.
     pub fields: Vec<String>,
@@ -19,7 +19,7 @@ pub struct Gauge {
     pub every: Cadence,
 }
 
-/// How often something is done.
+/// The frequency of an action.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cadence {
     /// Every so many steps.
@@ -43,7 +43,7 @@ impl Witness {
     /// Most witness planes of a case: particles know their sides in as many bits.
     pub const MOST: usize = 32;
 
-    /// How far a position (m) is beyond the plane (m).
+    /// The distance of a position (m) beyond the plane (m).
     #[must_use]
     pub fn beyond(&self, x: &[f64; 3]) -> f64 {
         (0..3)

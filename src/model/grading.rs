@@ -2,11 +2,11 @@
 
 use super::Vec3;
 
-/// How the spacing of a body grows: by `growth` of the distance, so that each layer is
-/// `1 + growth` times as thick as the one before it.
+/// The growth of the spacing of a body: by `growth` of the distance, so that each layer is `1 +
+/// growth` times as thick as the one before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grading {
-    /// What distances count from.
+    /// The origin of distances.
     pub from: Focus,
     /// Up to this distance the spacing is the finest (m).
     pub even: f64,
@@ -16,7 +16,7 @@ pub struct Grading {
     pub coarsest: f64,
 }
 
-/// Where a body is finest.
+/// The finest part of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Focus {
     /// About a point (m).

@@ -1,8 +1,8 @@
-//! What the particles of a body begin with, as a case says it.
+//! The initial state of the particles of a body, as in a case.
 
 use super::Profile;
 
-/// What decides the specific energy of particles.
+/// The source of the specific energy of particles.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Heat {
     /// The material's reference state.
@@ -14,8 +14,8 @@ pub enum Heat {
     Temperature(Profile),
 }
 
-/// What the particles of a body begin with beside its density, its spin and a velocity that is the
-/// same everywhere.
+/// The initial state of the particles of a body beside its density, its spin and a uniform
+/// velocity.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Initial {
     /// Components of the velocity (m/s) where it varies, in place of
@@ -23,7 +23,7 @@ pub struct Initial {
     pub velocity: Option<[Profile; 3]>,
     /// Largest difference of that from its middle (m/s).
     pub velocity_spread: f64,
-    /// What decides the specific energy.
+    /// The source of the specific energy.
     pub heat: Heat,
     /// Specific energy (J/kg) of the largest magnitude, where it varies.
     pub largest_energy: f64,
@@ -32,7 +32,7 @@ pub struct Initial {
 }
 
 impl Initial {
-    /// Whether anything varies within the body.
+    /// `true` if anything varies within the body.
     #[must_use]
     pub fn varies(&self) -> bool {
         let heat = match &self.heat {

@@ -1,4 +1,4 @@
-//! What is simulated, in SI units, before there are particles: bodies, materials, contact,
+//! The simulated problem, in SI units, before there are particles: bodies, materials, contact,
 //! symmetry planes, and the controls of a run.
 //!
 //! A [`Case`] is complete and validated: the `input` module builds it from TOML, every later module
@@ -54,7 +54,7 @@ pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
 pub use region::Region;
 pub use shape::Shape;
 pub use sizes::Sizes;
-pub use solid::{Form, Placement, Polygon, Solid, rotation};
+pub use solid::{Placement, Polygon, Primitive, Solid, rotation};
 pub use surface::{
     Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
     SurfaceShape, closest_on_triangle, triangulate,
@@ -100,11 +100,11 @@ pub struct Case {
     pub numerical_limits: NumericalLimits,
     /// When to stop.
     pub run: RunControl,
-    /// What to write and when.
+    /// The files to write and their times.
     pub output: OutputOptions,
-    /// How fragments are told, if they are.
+    /// The output of fragments, if any.
     pub fragments: Option<FragmentOptions>,
-    /// What is measured in the run.
+    /// The measurements of the run.
     pub measure: MeasureOptions,
     /// The input with all overrides applied, as TOML text; reading it gives this case again.
     pub resolved: String,
@@ -133,7 +133,7 @@ impl Case {
             .map(String::as_str)
     }
 
-    /// Density of a body's matter at rest (kg/m³): what it states, or that of its material.
+    /// Density of a body at rest (kg/m³): its own, or that of its material.
     #[must_use]
     pub fn density_of(&self, body: usize) -> f64 {
         let body = &self.bodies[body];
@@ -146,11 +146,11 @@ impl Case {
     pub fn meshes(&self) -> Vec<(&str, &Mesh)> {
         let mut all: Vec<(&str, &Mesh)> = Vec::new();
         for body in &self.bodies {
-            let mut found = Vec::new();
+            let mut meshes = Vec::new();
             if let Shape::Solid(solid) = &body.shape {
-                solid.meshes(&mut found);
+                solid.meshes(&mut meshes);
             }
-            all.extend(found.into_iter().map(|mesh| (body.name.as_str(), &**mesh)));
+            all.extend(meshes.into_iter().map(|mesh| (body.name.as_str(), &**mesh)));
         }
         for surface in &self.loads.surfaces {
             if let SurfaceShape::Mesh(mesh) = &surface.shape {
@@ -174,14 +174,14 @@ impl Case {
         first..first + self.loads.absorbers.len()
     }
 
-    /// Whether matter of the case may fail for good.
+    /// `true` if a material of the case may fail for good.
     #[must_use]
     pub fn may_fail(&self) -> bool {
         let mut bodies = self.bodies.iter();
         bodies.any(|body| self.materials[body.material].failure.has_memory())
     }
 
-    /// Whether failure of matter of the case changes this field.
+    /// `true` if failure of a material of the case changes this field.
     #[must_use]
     pub fn fails_with(&self, field: &str) -> bool {
         let mut bodies = self.bodies.iter();
@@ -193,7 +193,7 @@ impl Case {
         })
     }
 
-    /// Whether matter of the case may yield.
+    /// `true` if a material of the case may yield.
     #[must_use]
     pub fn may_yield(&self) -> bool {
         let mut bodies = self.bodies.iter();

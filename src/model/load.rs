@@ -1,4 +1,4 @@
-//! What acts on bodies from outside: gravity, prescribed velocities, absorbing zones, rigid surfaces.
+//! External loads on bodies: gravity, prescribed velocities, absorbing zones, rigid surfaces.
 
 use super::{Absorber, Motion, Region, RigidSurface};
 
@@ -19,27 +19,27 @@ impl Loads {
     /// Most prescribed velocities and rigid bodies together: a particle keeps a bit of each.
     pub const MOST: usize = 32;
 
-    /// Whether any rigid surface has friction or damping.
+    /// `true` if any rigid surface has friction or damping.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         self.surfaces.iter().any(|s| s.resistance.is_any())
     }
 
-    /// Whether there is gravity.
+    /// `true` if there is gravity.
     #[must_use]
     pub fn has_gravity(&self) -> bool {
         self.gravity != [0.0; 3]
     }
 }
 
-/// A velocity prescribed to the particles of a body that stand in a region at time zero.
+/// A velocity prescribed to the particles of a body that are in a region at time zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VelocityLoad {
     /// Name in reports.
     pub name: String,
     /// Index into [`super::Case::bodies`].
     pub body: usize,
-    /// Where these particles stand.
+    /// The region of these particles.
     pub region: Region,
     /// The velocity.
     pub motion: Motion,

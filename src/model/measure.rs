@@ -1,19 +1,19 @@
-//! What is measured in a run.
+//! Measurements of a run.
 
 use super::gauge::{Gauge, Witness};
 use super::{Case, Include, Region, Vec3};
 use material::Material;
 
-/// What is measured in a run: the tables `[measure]`, `[[gauge]]` and `[[witness]]`.
+/// Measurements of a run: the tables `[measure]`, `[[gauge]]` and `[[witness]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasureOptions {
-    /// Whether `bodies.csv` is written.
+    /// `true` if `bodies.csv` is written.
     pub bodies: bool,
     /// Time between rows of `measures.csv` (s).
     pub every: f64,
     /// Pressure (Pa) beyond which a shock has arrived; by material if absent.
     pub arrival_pressure: Option<f64>,
-    /// What `measures.csv` tells: those that the input names, then the usual ones.
+    /// The measures of `measures.csv`: those that the input names, then the default ones.
     pub measures: Vec<Measure>,
     /// Gauges, in the order of the input.
     pub gauges: Vec<Gauge>,
@@ -34,13 +34,13 @@ impl Default for MeasureOptions {
     }
 }
 
-/// A shock has arrived where pressure is beyond this fraction of the bulk modulus of the matter: a
-/// tenth of a percent of compression, well above the pressures at which a filling settles and
-/// below the elastic limits of metals.
+/// A shock has arrived where pressure is beyond this fraction of the bulk modulus of the material:
+/// a tenth of a percent of compression, well above the pressures of a filling that comes to rest
+/// and below the elastic limits of metals.
 const ARRIVED: f64 = 1e-3;
 
 impl MeasureOptions {
-    /// Whether particles must know that they carry gauges or belong to regions.
+    /// `true` if particles must know that they carry gauges or belong to regions.
     #[must_use]
     pub fn marks_particles(&self) -> bool {
         let mut zones = self.measures.iter();
@@ -58,16 +58,16 @@ impl MeasureOptions {
     }
 }
 
-/// One thing that rows of `measures.csv` tell about.
+/// One measure with rows in `measures.csv`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
     /// Name in tables.
     pub name: String,
-    /// What it tells.
+    /// Its quantity.
     pub kind: MeasureKind,
 }
 
-/// What a measure tells.
+/// The quantity of a measure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum MeasureKind {
     /// Hole, lips, bulge and verdict of a plate.
@@ -76,9 +76,9 @@ pub enum MeasureKind {
     Target(Slab),
     /// Length and diameters of a bar.
     Bar(Bar),
-    /// What flies beyond a plane.
+    /// Debris beyond a plane.
     Debris(Debris),
-    /// Means and extremes of a part of space or of matter.
+    /// Means and extremes of a part of space or of a body.
     Zone(Zone),
     /// A shock on a line.
     Front(FrontLine),
@@ -106,15 +106,15 @@ pub struct Slab {
     pub body: usize,
     /// Unit vector out of the face that is struck.
     pub normal: [f64; 3],
-    /// Where the struck face stands at the start, `n·x` (m).
+    /// Position of the struck face at the start, `n·x` (m).
     pub front: f64,
-    /// Where the other one stands (m).
+    /// Position of the other one (m).
     pub rear: f64,
     /// Finest spacing of the body (m).
     pub spacing: f64,
     /// Bodies that begin on the struck side, and the body itself.
     pub before: Vec<usize>,
-    /// What can remain of it.
+    /// The particles that can remain of it.
     pub include: Include,
 }
 
@@ -164,13 +164,13 @@ pub struct Bar {
 /// Matter beyond a plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Debris {
-    /// Index of the measure of a plate or a target, whose attached matter is no debris.
+    /// Index of the measure of a plate or a target, whose attached particles are no debris.
     pub of: Option<usize>,
     /// A point of the plane (m).
     pub point: [f64; 3],
     /// Unit vector of flight: what is beyond the plane along it may be debris.
     pub direction: [f64; 3],
-    /// Bodies whose matter may be debris.
+    /// Bodies whose particles may be debris.
     pub bodies: Vec<usize>,
     /// Areal mass (kg/m²) of the outline.
     pub outline: f64,
@@ -178,14 +178,14 @@ pub struct Debris {
     pub spacing: f64,
 }
 
-/// A part of space, or the matter that begins there.
+/// A part of space, or the particles that begin there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Zone {
-    /// Where it is.
+    /// Its place.
     pub place: ZonePlace,
-    /// The bit, from 1 on, by which particles know that they began in it, if it moves with matter.
+    /// The bit, from 1 on, of particles that began in it, if it moves with them.
     pub mark: Option<u32>,
-    /// The body whose matter it reads; all that deform if absent.
+    /// The body that it reads; all that deform if absent.
     pub body: Option<usize>,
     /// Names of what it reads.
     pub fields: Vec<String>,
@@ -206,10 +206,10 @@ pub enum ZonePlace {
 }
 
 impl ZonePlace {
-    /// Most zones that move with matter: particles know them by as many bits.
+    /// Most zones that move with particles, which have as many bits.
     pub const MOST: usize = 31;
 
-    /// Whether a place (m) is in it.
+    /// `true` if a place (m) is in it.
     #[must_use]
     pub fn contains(&self, x: &[f64; 3]) -> bool {
         match self {
@@ -225,11 +225,11 @@ impl ZonePlace {
 /// A line along which a shock is followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrontLine {
-    /// Where it begins (m).
+    /// Its first end (m).
     pub from: [f64; 3],
-    /// Where it ends (m).
+    /// Its last end (m).
     pub to: [f64; 3],
-    /// How far from the line matter counts (m).
+    /// Largest distance of particles from the line (m).
     pub radius: f64,
     /// Length of the pieces in which the line is read (m).
     pub piece: f64,

@@ -21,7 +21,7 @@ impl Motion {
         }
     }
 
-    /// Whether the velocity along an axis is prescribed.
+    /// `true` if the velocity along an axis is prescribed.
     #[must_use]
     pub fn has(&self, axis: usize) -> bool {
         self.velocities[axis].is_some()
@@ -121,7 +121,7 @@ mod tests {
         }
     }
 
-    /// What is exact in doubles is held exactly.
+    /// Values that are exact in doubles are held exactly.
     fn same(a: f64, b: f64) {
         assert_eq!(a.to_bits(), b.to_bits(), "{a} is not {b}");
     }

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::Case;
 
-/// What happens to a particle whose state is out of range.
+/// The fate of a particle whose state is out of range.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NumericalFailurePolicy {
@@ -21,7 +21,7 @@ pub enum NumericalFailurePolicy {
 /// Ranges of a particle's state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumericalLimits {
-    /// What happens outside of them.
+    /// The fate of particles outside of them.
     pub policy: NumericalFailurePolicy,
     /// Largest speed (m/s).
     pub speed_max: f64,

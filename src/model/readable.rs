@@ -65,7 +65,7 @@ impl Readable {
             "m" => (0.1, 1e3),
             _ => (1.0, f64::INFINITY),
         };
-        // What comes of rounding, such as .99999999999999 mm, keeps its unit.
+        // Results of rounding, such as .99999999999999 mm, keep their unit.
         let reached = |size: f64| largest >= least * size * (1.0 - 1e-9);
         let fits = |prefix: &&(&str, f64)| prefix.1 <= top && reached(prefix.1);
         let (prefix, size) = PREFIXES.iter().find(fits).copied().unwrap_or(("", 1.0));
@@ -104,7 +104,7 @@ impl Readable {
         fixed(value / self.size, decimals)
     }
 
-    /// A value in SI with this unit, as it could stand in an input: `"0.2 us"`.
+    /// A value in SI with this unit, in the syntax of the input: `"0.2 us"`.
     #[must_use]
     pub fn text(&self, value: f64) -> String {
         format!("{}{}", short(value / self.size), self.suffix())
@@ -138,8 +138,8 @@ fn plain(unit: &str, largest: f64) -> Readable {
     }
 }
 
-/// A value in SI with a unit that fits it, to five digits, as it could stand in an input:
-/// `"0.254 us"`, `"12.5 mm"`, `"2785 kg/m^3"`.
+/// A value in SI with a unit that fits it, to five digits, in the syntax of the input: `"0.254
+/// us"`, `"12.5 mm"`, `"2785 kg/m^3"`.
 #[must_use]
 pub fn shown(value: f64, unit: &str) -> String {
     plain(unit, value.abs()).text(value)
@@ -220,7 +220,7 @@ pub fn superscript(power: i32) -> String {
         .collect()
 }
 
-/// Whether a terminal shows a character as such: it is no control character, and neither parts
+/// `true` if a terminal prints a character as such: it is no control character, and neither parts
 /// lines nor turns the direction of others.
 #[must_use]
 pub fn is_printable(c: char) -> bool {

@@ -16,19 +16,19 @@ impl Region {
         below: [f64::INFINITY; 3],
     };
 
-    /// Whether a place (m) is in the region, its sides included.
+    /// `true` if a place (m) is in the region, its sides included.
     #[must_use]
     pub fn contains(&self, place: &[f64; 3]) -> bool {
         (0..3).all(|a| self.above[a] <= place[a] && place[a] <= self.below[a])
     }
 
-    /// Whether a place (m) is beyond a side; one that is no number is not.
+    /// `true` if a place (m) is beyond a side; NaN is not.
     #[must_use]
     pub fn is_left_by(&self, place: &[f64; 3]) -> bool {
         (0..3).any(|a| place[a] < self.above[a] || place[a] > self.below[a])
     }
 
-    /// Whether it has any place of the box between two corners (m).
+    /// `true` if it has any place of the box between two corners (m).
     #[must_use]
     pub fn meets(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
         (0..3).all(|a| self.above[a] <= upper[a] && lower[a] <= self.below[a])

@@ -1,7 +1,7 @@
-//! Where the matter of a body begins: its shape.
+//! The initial shape of a body.
 
 use super::axis::{Axis, SymmetryPlane};
-use super::{Form, Placement, Polygon, Solid, Vec3};
+use super::{Placement, Polygon, Primitive, Solid, Vec3};
 
 /// The geometry of a body, in its final place (m).
 ///
@@ -80,15 +80,16 @@ impl Shape {
     /// If a cylinder has no radius or no length.
     #[must_use]
     pub fn solid(&self, dimension: usize) -> Solid {
-        let ball =
-            |centre: &Vec3, radius: f64| Solid::Form(Form::Ball(radius), Placement::at(*centre));
+        let ball = |centre: &Vec3, radius: f64| {
+            Solid::Primitive(Primitive::Ball(radius), Placement::at(*centre))
+        };
         match self {
             Self::Box { lower, upper } => {
                 let mut half = (upper - lower) * 0.5;
                 for a in dimension..3 {
                     half[a] = f64::INFINITY;
                 }
-                Solid::Form(Form::Box(half), Placement::at((lower + upper) * 0.5))
+                Solid::Primitive(Primitive::Box(half), Placement::at((lower + upper) * 0.5))
             }
             Self::Sphere { centre, radius } => ball(centre, *radius),
             Self::Shell {
@@ -108,8 +109,8 @@ impl Shape {
                 let half = 0.5 * length;
                 let outline = vec![[0.0, -half], [*r, -half], [*r, half], [0.0, half]];
                 let profile = Polygon::new(outline).expect("a rectangle");
-                Solid::Form(
-                    Form::Revolved(profile),
+                Solid::Primitive(
+                    Primitive::Revolved(profile),
                     Placement::turned(Self::onto(*axis), *centre),
                 )
             }
@@ -127,7 +128,7 @@ impl Shape {
     /// Volume (m³; m² or m in two or one dimensions).
     #[must_use]
     pub fn volume(&self, dimension: usize) -> f64 {
-        let ball = |radius: f64| Form::Ball(radius).volume(dimension);
+        let ball = |radius: f64| Primitive::Ball(radius).volume(dimension);
         match self {
             Self::Box { lower, upper } => (0..dimension).map(|a| upper[a] - lower[a]).product(),
             Self::Sphere { radius, .. } => ball(*radius),

@@ -2,7 +2,7 @@
 
 use super::{Case, edge};
 
-/// How large particles are against those of the spacing of their bodies, as their masses tell.
+/// Sizes of particles over those of the spacing of their bodies, by their masses.
 #[derive(Debug, Clone)]
 pub struct Sizes {
     dimension: usize,

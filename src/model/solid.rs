@@ -6,16 +6,16 @@
 //! distance, and it changes no faster than the point moves.
 
 mod ellipsoid;
-mod form;
 mod polygon;
+mod primitive;
 mod support;
 mod volume;
 
 #[cfg(test)]
 mod tests;
 
-pub use form::{Faces, Form};
 pub use polygon::Polygon;
+pub use primitive::{Faces, Primitive};
 
 use std::sync::Arc;
 
@@ -26,7 +26,7 @@ use super::{Mesh, Vec3};
 pub struct Placement {
     /// Matrix that turns a vector of the form into one of space.
     pub turn: nalgebra::Matrix3<f64>,
-    /// Where the origin of the form lies (m).
+    /// Position of the primitive's origin (m).
     pub at: Vec3,
 }
 
@@ -45,18 +45,18 @@ impl Placement {
     }
 
     /// Corners of the smallest box around a form in this place (m), flat along an axis without end.
-    fn bounds(&self, form: &Form) -> (Vec3, Vec3) {
+    fn bounds(&self, primitive: &Primitive) -> (Vec3, Vec3) {
         let is_whole = |c: &f64| *c == 0.0 || c.abs() == 1.0;
         if self.turn.iter().all(is_whole) {
             // Along axes, to the last bit.
             let finite = |v: Vec3| v.map(|c| if c.is_finite() { c } else { 0.0 });
-            let (lower, upper) = form.bounds();
+            let (lower, upper) = primitive.bounds();
             let centre = self.at + self.turn * finite((lower + upper) * 0.5);
             let aside = self.turn.abs() * finite((upper - lower) * 0.5);
             return (centre - aside, centre + aside);
         }
         let farthest = |n: Vec3| {
-            let most = form.support(&self.turn.tr_mul(&n));
+            let most = primitive.support(&self.turn.tr_mul(&n));
             if most.is_finite() { most } else { 0.0 }
         };
         let axis = |a: usize| Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
@@ -85,12 +85,12 @@ pub fn rotation(axis: &Vec3, angle: f64) -> nalgebra::Matrix3<f64> {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Solid {
     /// One form.
-    Form(Form, Placement),
-    /// What any of them holds.
+    Primitive(Primitive, Placement),
+    /// The union of all.
     Union(Vec<Solid>),
-    /// What all of them hold.
+    /// The intersection of all.
     Intersection(Vec<Solid>),
-    /// What the first holds and none of the others.
+    /// The first without any of the others.
     Difference(Box<Solid>, Vec<Solid>),
 }
 
@@ -99,7 +99,7 @@ impl Solid {
     #[must_use]
     pub fn distance(&self, x: &Vec3) -> f64 {
         match self {
-            Self::Form(form, place) => form.distance(&place.inward(x)),
+            Self::Primitive(primitive, placement) => primitive.distance(&placement.inward(x)),
             Self::Union(parts) => parts.iter().fold(f64::INFINITY, |least, part| {
                 if part.is_beyond(x, least) {
                     return least;
@@ -119,15 +119,15 @@ impl Solid {
         }
     }
 
-    /// Whether a point is so far (m) or farther from the surface outside, as its box tells; of forms
-    /// that tell their distance as quickly it says no.
+    /// `true` if the box shows that a point is `distance` (m) or farther from the surface outside;
+    /// `false` for primitives whose distance takes no longer.
     fn is_beyond(&self, x: &Vec3, distance: f64) -> bool {
         match self {
-            Self::Form(Form::Mesh(mesh), place) => {
-                let least = mesh.distance_of_box(&place.inward(x).into());
+            Self::Primitive(Primitive::Mesh(mesh), placement) => {
+                let least = mesh.distance_of_box(&placement.inward(x).into());
                 least > 0.0 && least >= distance
             }
-            Self::Form(..) => false,
+            Self::Primitive(..) => false,
             Self::Union(parts) => parts.iter().all(|part| part.is_beyond(x, distance)),
             Self::Intersection(parts) => parts.iter().any(|part| part.is_beyond(x, distance)),
             Self::Difference(base, _) => base.is_beyond(x, distance),
@@ -136,31 +136,31 @@ impl Solid {
 
     /// Tells the faces that a point inside lies less than `reach` (m) below: depth (m), and the
     /// unit normal out of the solid.
-    pub fn faces(&self, x: &Vec3, reach: f64, tell: Faces) {
+    pub fn faces(&self, x: &Vec3, reach: f64, emit: Faces) {
         match self {
-            Self::Form(form, place) => {
-                let mut outward = |depth, normal| tell(depth, place.turn * normal);
-                form.faces(&place.inward(x), reach, &mut outward);
+            Self::Primitive(primitive, placement) => {
+                let mut outward = |depth, normal| emit(depth, placement.turn * normal);
+                primitive.faces(&placement.inward(x), reach, &mut outward);
             }
             Self::Union(parts) => {
                 // Where parts overlap, the faces of the one that holds the point deepest.
                 let depth = |part: &&Self| -part.distance(x);
                 let deepest = parts.iter().max_by(|a, b| depth(a).total_cmp(&depth(b)));
                 if let Some(part) = deepest {
-                    part.faces(x, reach, tell);
+                    part.faces(x, reach, emit);
                 }
             }
             Self::Intersection(parts) => {
                 for part in parts {
-                    part.faces(x, reach, tell);
+                    part.faces(x, reach, emit);
                 }
             }
             Self::Difference(base, cuts) => {
-                base.faces(x, reach, tell);
+                base.faces(x, reach, emit);
                 for cut in cuts.iter().filter(|cut| !cut.is_beyond(x, reach)) {
                     let depth = cut.distance(x);
                     if depth < reach {
-                        tell(depth, -cut.outward(x));
+                        emit(depth, -cut.outward(x));
                     }
                 }
             }
@@ -170,8 +170,8 @@ impl Solid {
     /// Unit vector along which the distance grows.
     #[must_use]
     pub fn outward(&self, x: &Vec3) -> Vec3 {
-        if let Self::Form(form, place) = self {
-            return place.turn * form.outward(&place.inward(x));
+        if let Self::Primitive(primitive, placement) = self {
+            return placement.turn * primitive.outward(&placement.inward(x));
         }
         let step = 1e-6 * self.reach();
         let slope = Vec3::from_fn(|a, _| {
@@ -191,7 +191,9 @@ impl Solid {
             all.fold(from, pick)
         };
         match self {
-            Self::Form(form, place) => form.support(&place.turn.tr_mul(n)) + n.dot(&place.at),
+            Self::Primitive(primitive, placement) => {
+                primitive.support(&placement.turn.tr_mul(n)) + n.dot(&placement.at)
+            }
             Self::Union(parts) => of(parts, f64::NEG_INFINITY, f64::max),
             Self::Intersection(parts) => of(parts, f64::INFINITY, f64::min),
             Self::Difference(base, _) => base.support(n),
@@ -204,7 +206,7 @@ impl Solid {
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let nothing = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
         match self {
-            Self::Form(form, place) => place.bounds(form),
+            Self::Primitive(primitive, placement) => placement.bounds(primitive),
             Self::Union(parts) => {
                 let boxes = parts.iter().map(Self::bounds);
                 boxes.fold(nothing, |a, b| (a.0.inf(&b.0), a.1.sup(&b.1)))
@@ -226,19 +228,19 @@ impl Solid {
     }
 
     /// Adds the meshes among its forms.
-    pub fn meshes<'a>(&'a self, found: &mut Vec<&'a Arc<Mesh>>) {
+    pub fn meshes<'a>(&'a self, meshes: &mut Vec<&'a Arc<Mesh>>) {
         match self {
-            Self::Form(Form::Mesh(mesh), _) => found.push(mesh),
-            Self::Form(..) => {}
+            Self::Primitive(Primitive::Mesh(mesh), _) => meshes.push(mesh),
+            Self::Primitive(..) => {}
             Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
-                    part.meshes(found);
+                    part.meshes(meshes);
                 }
             }
             Self::Difference(base, cuts) => {
-                base.meshes(found);
+                base.meshes(meshes);
                 for cut in cuts {
-                    cut.meshes(found);
+                    cut.meshes(meshes);
                 }
             }
         }
@@ -247,7 +249,7 @@ impl Solid {
     /// Moves it (m).
     pub fn translate(&mut self, way: &Vec3) {
         match self {
-            Self::Form(_, place) => place.at += way,
+            Self::Primitive(_, placement) => placement.at += way,
             Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
                     part.translate(way);
@@ -265,9 +267,9 @@ impl Solid {
     /// Turns it about a point (m).
     pub fn rotate(&mut self, turn: &nalgebra::Matrix3<f64>, about: &Vec3) {
         match self {
-            Self::Form(_, place) => {
-                place.at = about + turn * (place.at - about);
-                place.turn = turn * place.turn;
+            Self::Primitive(_, placement) => {
+                placement.at = about + turn * (placement.at - about);
+                placement.turn = turn * placement.turn;
             }
             Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
@@ -287,7 +289,7 @@ impl Solid {
     #[must_use]
     pub fn volume(&self, dimension: usize) -> f64 {
         match self {
-            Self::Form(form, _) => form.volume(dimension),
+            Self::Primitive(primitive, _) => primitive.volume(dimension),
             _ => volume::integrated(&|x| self.distance(x), self.bounds(), dimension),
         }
     }
@@ -298,10 +300,10 @@ impl Solid {
         if planes.is_empty() {
             return self.volume(dimension);
         }
-        if let Self::Form(Form::Mesh(mesh), place) = self {
+        if let Self::Primitive(Primitive::Mesh(mesh), placement) = self {
             let planes = planes.iter().map(|&(a, at)| {
                 let across = Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
-                (place.turn.tr_mul(&across).into(), at - place.at[a])
+                (placement.turn.tr_mul(&across).into(), at - placement.at[a])
             });
             return mesh.volume_above(&planes.collect::<Vec<_>>());
         }

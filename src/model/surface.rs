@@ -1,9 +1,9 @@
 //! Rigid surfaces, which keep particles on one of their sides: planes, spheres, cylinders and
 //! closed meshes of triangles.
 //!
-//! All of them answer one question, [`RigidSurface::foot`]: where is the nearest place of the
-//! surface, and on which side of it is a point. Shapes are given where they stand at time zero; a
-//! surface moves as a whole, so that points are taken into its frame and the shape never changes.
+//! All of them answer one question, [`RigidSurface::foot`]: the nearest place of the surface to a
+//! point, and its side. Shapes are given at time zero; a surface moves as a whole, so that points
+//! are taken into its frame and the shape never changes.
 
 mod closed;
 mod crossing;
@@ -36,13 +36,13 @@ pub struct RigidSurface {
     pub name: String,
     /// Shape and place at time zero.
     pub shape: SurfaceShape,
-    /// Whether particles are kept inside the shape, as in a container, and not outside of it.
+    /// `true` if particles are kept inside the shape, as in a container, and not outside of it.
     pub inside: bool,
     /// Stiffness κ of the penalty relative to the p-wave modulus.
     pub stiffness: f64,
     /// Friction and damping.
     pub resistance: Resistance,
-    /// Whether it acts on each of [`super::Case::bodies`].
+    /// `true` for each of [`super::Case::bodies`] that it acts on.
     pub bodies: Vec<bool>,
     /// Its motion; fixed on free axes.
     pub motion: Motion,
@@ -70,7 +70,7 @@ pub struct Spin {
     pub rate: Motion,
 }
 
-/// What a rigid surface looks like.
+/// The shape of a rigid surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SurfaceShape {
     /// Everything on one side of a plane.
@@ -155,8 +155,8 @@ impl SurfaceShape {
         (foot.gap.abs() <= limit || matches!(self, Self::Plane { .. })).then_some(foot)
     }
 
-    /// Whether a point that keeps its distance from the nearest place of the surface keeps it from
-    /// all others, as outside of what is convex.
+    /// `true` if a point that keeps its distance from the nearest place of the surface keeps it
+    /// from all others, as outside of a convex shape.
     fn one_foot(&self, inside: bool) -> bool {
         match self {
             Self::Plane { .. } | Self::Sphere { .. } => true,
@@ -211,7 +211,7 @@ impl RigidSurface {
         }
     }
 
-    /// Whether a particle at its distance from the nearest place is so from all others.
+    /// `true` if a particle at its distance from the nearest place is so from all others.
     #[must_use]
     pub fn one_foot(&self) -> bool {
         self.shape.one_foot(self.inside)
@@ -247,7 +247,7 @@ impl RigidSurface {
         }
     }
 
-    /// What [`Self::gap`] (m) is at least in the box between two corners (m).
+    /// The least [`Self::gap`] (m) in the box between two corners (m).
     #[must_use]
     pub fn least_gap(&self, lower: &[f64; 3], upper: &[f64; 3], limit: f64) -> f64 {
         if let SurfaceShape::Plane { normal, .. } = &self.shape {

@@ -42,7 +42,7 @@ const SYMBOLS: &[(&str, Powers, i32, f64)] = &[
 
 /// 4.4482216152605 N over (.0254 m)².
 const POUND_PER_INCH2: f64 = 6_894.757_293_168_361;
-/// The degree Celsius, whose zero is another than that of its dimension when it stands alone.
+/// The degree Celsius, whose zero differs from that of its dimension when it is alone.
 const CELSIUS: [&str; 2] = ["°C", "degC"];
 /// Zero of the Celsius scale (K).
 pub const ICE: f64 = 273.15;
@@ -65,13 +65,13 @@ const PREFIXES: &[(&str, i32)] = &[
 /// Longest text of a number with its unit (bytes): nobody writes more, and nothing that is read
 /// from less can overflow.
 const LONGEST: usize = 200;
-/// Largest decimal exponent that is told from infinity.
+/// Largest finite decimal exponent.
 const LARGEST_EXPONENT: i32 = 100_000;
 
 /// Value in SI units and dimension of a number with an optional unit.
 ///
 /// # Errors
-/// What of the text is not understood, or that the number is too large.
+/// A message on the part of the text that is not understood, or if the number is too large.
 pub fn parse(text: &str) -> Result<(f64, Powers), String> {
     let text = text.trim();
     if text.len() > LONGEST {
@@ -96,7 +96,7 @@ pub struct Leading {
     pub value: f64,
     /// Dimension.
     pub powers: Powers,
-    /// Whether it is a temperature in degrees Celsius.
+    /// `true` for a temperature in degrees Celsius.
     pub celsius: bool,
     /// Bytes of the text that it takes.
     pub length: usize,
@@ -173,7 +173,7 @@ struct Unit {
     powers: Powers,
     exponent: i32,
     factor: f64,
-    /// How many symbols it has, and how many of them are the degree Celsius.
+    /// The number of its symbols, and how many of them are the degree Celsius.
     symbols: [u32; 2],
 }
 
@@ -248,7 +248,7 @@ impl Unit {
         }
     }
 
-    /// Where its scale begins, in SI units.
+    /// The zero of its scale, in SI units.
     fn zero(&self) -> f64 {
         let is_celsius = self.symbols == [1, 1] && self.powers == [0, 0, 0, 1, 0];
         if is_celsius { ICE } else { 0.0 }
@@ -297,8 +297,8 @@ impl Unit {
         let end = text.find(|c| !is_letter(c)).unwrap_or(text.len());
         let (name, rest) = text.split_at(end);
         let (powers, exponent, factor) = find_symbol(name).ok_or_else(|| {
-            let shown = if name.is_empty() { text } else { name };
-            format!("unknown unit `{shown}`")
+            let named = if name.is_empty() { text } else { name };
+            format!("unknown unit `{named}`")
         })?;
         let (power, rest) = split_power(rest)?;
         let power = power * sign;

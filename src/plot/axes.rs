@@ -82,7 +82,7 @@ impl Axes {
     }
 }
 
-/// Where a number lies in a span, 0 to 1.
+/// The position of a number in a span, 0 to 1.
 #[expect(clippy::cast_possible_truncation, reason = "a pixel needs no more")]
 fn share(value: f64, span: [f64; 2]) -> f32 {
     ((value - span[0]) / (span[1] - span[0])) as f32

@@ -22,10 +22,10 @@ pub const INK: Rgb = [32, 32, 32];
 /// Colour of the paper.
 pub const PAPER: Rgb = [255, 255, 255];
 
-/// How far beyond the frame that they are cut at lines go (pixels): no end of one is seen.
+/// Length of lines beyond the frame that they are cut at (pixels): no end of one is seen.
 const BEYOND: f32 = 50.0;
 
-/// Which point of a line of text its position names.
+/// The point of a line of text that its position names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     Start,
@@ -40,7 +40,7 @@ pub struct Canvas {
     document: Document,
     /// The discs that were drawn last.
     discs: Discs,
-    /// What all that is drawn is cut at.
+    /// The frame that cuts all that is drawn.
     clip: Option<Frame>,
 }
 
@@ -66,7 +66,7 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// Whether paper of a size in pixels can be held: no more than 2³¹ bytes of it.
+    /// Checks that paper of a size in pixels takes no more than 2³¹ bytes.
     ///
     /// # Errors
     /// [`PlotError::Size`] if not.
@@ -79,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// What `draw` draws, cut at a frame.
+    /// Draws with `draw`, cut at a frame.
     pub fn within(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
         let outer = self.clip.replace(*frame);
         draw(self);
@@ -117,7 +117,7 @@ impl Canvas {
 
     fn add_disc(&mut self, disc: Disc, clip: &Frame) {
         if *clip != self.discs.clip {
-            self.settle();
+            self.flush_discs();
             self.discs.clip = *clip;
         }
         self.discs.add(disc, self.size);
@@ -152,7 +152,7 @@ impl Canvas {
                 height,
                 rgba: rgba.collect(),
             };
-            self.settle();
+            self.flush_discs();
             put_image(&mut self.document, self.clip.as_ref(), &frame, &pixels);
         }
     }
@@ -210,8 +210,8 @@ impl Canvas {
     /// A line of text that runs upwards, with its baseline at `at`.
     pub fn text_upwards(&mut self, text: &str, at: (f32, f32), size: f32, align: Align) {
         let [x, y] = [at.0, at.1].map(number);
-        let place = format!("transform=\"translate({x} {y})rotate(-90)\"");
-        self.write(text, place, size, align);
+        let transform = format!("transform=\"translate({x} {y})rotate(-90)\"");
+        self.write(text, transform, size, align);
     }
 
     fn write(&mut self, text: &str, attributes: String, size: f32, align: Align) {
@@ -234,12 +234,12 @@ impl Canvas {
 
     /// Adds an element over the discs so far.
     fn put(&mut self, style: &str, element: Element) {
-        self.settle();
+        self.flush_discs();
         self.document.put(self.clip.as_ref(), style, element);
     }
 
     /// Adds the discs so far.
-    fn settle(&mut self) {
+    fn flush_discs(&mut self) {
         let discs = std::mem::take(&mut self.discs);
         put_discs(&mut self.document, &discs);
     }
@@ -297,9 +297,9 @@ fn put_discs(document: &mut Document, discs: &Discs) {
     }
 }
 
-/// Adds pixels, which stay apart however large they are shown.
+/// Adds pixels, which stay apart at any magnification.
 fn put_image(document: &mut Document, clip: Option<&Frame>, frame: &Frame, pixels: &Pixels) {
-    // What cannot be a PNG file has no pixels.
+    // Pixels that cannot be a PNG file are left out.
     let Ok(file) = pixels.fast_png() else { return };
     let attributes = format!(
         "{} preserveAspectRatio=\"none\" href=\"data:image/png;base64,{}\"",

@@ -2,7 +2,7 @@
 
 use super::canvas::Rgb;
 
-/// Colours of bodies: the set of Okabe & Ito (2008), which colour-blind readers can tell apart.
+/// Colours of bodies: the set of Okabe & Ito (2008), which colour-blind readers can distinguish.
 const BODIES: [Rgb; 7] = [
     [0, 114, 178],
     [230, 159, 0],
@@ -40,8 +40,8 @@ const VIRIDIS: [Rgb; 17] = [
     [253, 231, 37],
 ];
 
-/// The map "cool to warm" of Moreland (2009) at even shares; its middle is grey, so that
-/// particles at zero still stand out from the paper.
+/// The map "cool to warm" of Moreland (2009) at even shares; its middle is grey, so that particles
+/// at zero still differ from the paper.
 const COOL_WARM: [Rgb; 17] = [
     [59, 76, 192],
     [78, 104, 215],
@@ -110,7 +110,7 @@ pub struct Scale {
     map: Map,
 }
 
-/// Which colours a scale has.
+/// The colour maps of scales.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Map {
     /// Of one sign.
@@ -189,9 +189,9 @@ impl Scale {
     reason = "clamped to the map first; a mean of two bytes is a byte"
 )]
 fn sample(map: &[Rgb; 17], share: f64) -> Rgb {
-    let place = 16.0 * share.clamp(0.0, 1.0);
-    let first = (place as usize).min(15);
-    let part = place - first as f64;
+    let position = 16.0 * share.clamp(0.0, 1.0);
+    let first = (position as usize).min(15);
+    let part = position - first as f64;
     let mix = |k: usize| {
         let (a, b) = (f64::from(map[first][k]), f64::from(map[first + 1][k]));
         (a + part * (b - a)).round() as u8

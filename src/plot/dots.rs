@@ -43,7 +43,7 @@ impl Dots {
         }
     }
 
-    /// Where they are in the picture, and the pixels; nothing if there are none.
+    /// The frame and the pixels; nothing if there are none.
     pub fn image(&self) -> Option<(Frame, Pixels)> {
         let rows = self.pixels.len().checked_div(self.columns)?;
         let frame = Frame {
@@ -111,8 +111,8 @@ impl Dots {
     clippy::cast_sign_loss,
     reason = "a float cast saturates, and what is no number is 0"
 )]
-fn floor(place: f32) -> usize {
-    place.floor().max(0.0) as usize
+fn floor(value: f32) -> usize {
+    value.floor().max(0.0) as usize
 }
 
 /// The share of a pixel within a disc, from 4 × 4 samples; the pixel's centre lies at (dx, dy)

@@ -1,4 +1,4 @@
-//! What can go wrong on the way to a picture.
+//! Errors of pictures.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub enum PlotError {
     Snapshot {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// The path is neither a snapshot nor a run with snapshots.
@@ -53,7 +53,7 @@ pub enum PlotError {
         field: String,
         /// As asked for, if one was.
         component: Option<String>,
-        /// What there is.
+        /// The known ones.
         known: String,
     },
     /// The snapshots hold no such body.
@@ -69,7 +69,7 @@ pub enum PlotError {
     Quantity {
         /// As typed.
         text: String,
-        /// What is wanted.
+        /// The accepted ones.
         expected: String,
     },
     /// A plane is not written as `AXIS=POSITION`.
@@ -88,7 +88,7 @@ pub enum PlotError {
     Empty {
         /// Normal of the plane.
         axis: &'static str,
-        /// Where the plane is, with unit.
+        /// The position of the plane, with unit.
         position: String,
         /// Smallest coordinate, with unit.
         lowest: String,
@@ -100,13 +100,13 @@ pub enum PlotError {
     Table {
         /// The file.
         path: PathBuf,
-        /// What is wrong, and in which line.
+        /// The fault, and its line.
         reason: String,
     },
     /// The run has no answer that is known exactly.
     #[error("no exact answer: {reason}")]
     Exact {
-        /// Why, and what would have one.
+        /// The reason, and the cases that have one.
         reason: String,
     },
     /// No particle lies on the line.
@@ -137,7 +137,7 @@ pub enum PlotError {
     /// A picture that was made is none that can be read: a fault of ours.
     #[error("cannot draw the picture: {reason}")]
     Svg {
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// The picture could not be written.
@@ -145,7 +145,7 @@ pub enum PlotError {
     Save {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         reason: String,
     },
 }

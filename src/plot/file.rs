@@ -12,7 +12,7 @@ use files::output::{NewFile, OutputError};
 /// # Errors
 /// [`PlotError::Save`] if the system refuses.
 pub fn save(path: &Path, content: &[u8]) -> Result<(), PlotError> {
-    let takes = |found: fs::Metadata| !found.is_file() && !found.is_dir();
+    let takes = |metadata: fs::Metadata| !metadata.is_file() && !metadata.is_dir();
     if fs::metadata(path).is_ok_and(takes) {
         return fs::write(path, content).map_err(|error| PlotError::unsaved(path, error));
     }
@@ -32,7 +32,7 @@ pub fn save_by(
     file.finish().map_err(unsaved(path))
 }
 
-/// What the system says, of the file that was asked for.
+/// The error of the system, for the file that was asked for.
 fn unsaved(path: &Path) -> impl Fn(OutputError) -> PlotError {
     move |error| match error {
         OutputError::Io { source, .. } => PlotError::unsaved(path, source),

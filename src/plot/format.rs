@@ -1,8 +1,8 @@
-//! What files of pictures are.
+//! Formats of pictures.
 
 use std::path::Path;
 
-/// What a picture is written as: the ending of its name tells.
+/// The format of a picture, by the ending of its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Format {
     /// Pixels.
@@ -28,7 +28,7 @@ impl Format {
         }
     }
 
-    /// What a name is that of, if any.
+    /// The format of a name, if any.
     #[must_use]
     pub fn of(path: &Path) -> Option<Self> {
         let ending = path.extension()?;

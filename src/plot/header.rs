@@ -4,7 +4,7 @@ use super::canvas::{Align, Canvas, Frame, INK, Rgb};
 use super::font;
 use super::style::Style;
 
-/// How a thing of the legend looks in the picture.
+/// The mark of an entry of the legend.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Mark {
     /// A line.
@@ -103,7 +103,7 @@ impl Entry {
     }
 }
 
-/// Where the header has got to.
+/// The current position in the header.
 struct Pen<'a> {
     canvas: Option<&'a mut Canvas>,
     y: f32,

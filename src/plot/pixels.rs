@@ -61,19 +61,19 @@ impl Pixels {
         pixels.flat_map(|&[r, g, b, _]| [r, g, b]).collect()
     }
 
-    /// A small PNG file without alpha: and without filters, which spoil the repetition that discs of
-    /// a lattice and blank paper are made of.
+    /// A small PNG file without alpha: and without filters, which spoil the repetition of the discs
+    /// of a lattice and of blank paper.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The error of the encoder.
     pub fn png(&self) -> Result<Vec<u8>, png::EncodingError> {
         self.encode(&self.rgb(), png::ColorType::Rgb, png::Compression::High)
     }
 
-    /// A PNG file with alpha where it has any, made fast.
+    /// A PNG file with alpha if any pixel has it, made fast.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The error of the encoder.
     pub fn fast_png(&self) -> Result<Vec<u8>, png::EncodingError> {
         let fast = png::Compression::Balanced;
         if self.rgba.chunks_exact(4).all(|p| p[3] == 255) {

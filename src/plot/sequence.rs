@@ -1,4 +1,4 @@
-//! Pictures of snapshots, of whatever kind.
+//! Pictures of snapshots of any sort.
 
 use std::ops::Range;
 use std::path::Path;
@@ -6,23 +6,22 @@ use std::path::Path;
 use super::PlotError;
 use super::canvas::Canvas;
 use super::picture::titles::Titles;
-use super::style::usual_width;
+use super::style::default_width;
 
-/// What is said where a table of pictures without one is asked for.
+/// The message if a table of pictures without one is asked for.
 pub const NO_TABLE: &str = "there is no table of a view or a radiograph, but of a section: draw it as .png or \
                             .svg";
 
 /// Pictures of some snapshots that share frame and colours.
 pub trait Sequence {
-    /// What the pictures say of the snapshots.
+    /// The titles of the pictures.
     fn titles(&self) -> &Titles;
 
-    /// What is shown of the snapshots, as their pictures say it: where sections are taken, from where
-    /// a view is. May be empty.
-    fn place(&self) -> &str;
+    /// The section or viewpoint of the pictures, as their titles have it. May be empty.
+    fn caption(&self) -> &str;
 
-    /// One picture of some snapshots, by their places among the paths, side by side in a width in
-    /// pixels, with what stands below its title and above its panels.
+    /// One picture of some snapshots, by their indices among the paths, side by side in a width in
+    /// pixels, with a text below its title and headings above its panels.
     ///
     /// # Errors
     /// [`PlotError::Size`] if no such picture can be held, [`PlotError::Read`] if a snapshot cannot
@@ -40,8 +39,8 @@ pub trait Sequence {
     /// # Errors
     /// As [`Self::draw`].
     fn single(&self, index: usize, width: Option<u32>) -> Result<Canvas, PlotError> {
-        let subtitle = self.titles().subtitle(index, self.place());
-        let width = width.unwrap_or(usual_width(1));
+        let subtitle = self.titles().subtitle(index, self.caption());
+        let width = width.unwrap_or(default_width(1));
         self.draw(index..index + 1, &subtitle, &[], width)
     }
 
@@ -56,9 +55,9 @@ pub trait Sequence {
         }
         let (headings, width) = (
             self.titles().headings(),
-            width.unwrap_or(usual_width(count)),
+            width.unwrap_or(default_width(count)),
         );
-        self.draw(0..count, self.place(), &headings, width)
+        self.draw(0..count, self.caption(), &headings, width)
     }
 
     /// Writes what the pictures of some snapshots show, by their places among the paths, as a table.

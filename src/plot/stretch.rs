@@ -1,4 +1,4 @@
-//! What of a line is near a frame: the rest is not seen, and need not be in a picture.
+//! The parts of a line near a frame: the rest is not seen, and need not be in a picture.
 
 use super::frame::Frame;
 
@@ -29,8 +29,8 @@ pub fn stretches(points: &[(f32, f32)], frame: &Frame) -> Vec<Vec<(f32, f32)>> {
     reason = "back to where it came from"
 )]
 fn within(a: (f32, f32), b: (f32, f32), frame: &Frame) -> Option<[(f32, f32); 2]> {
-    let place = |at: (f32, f32)| [at.0, at.1].map(|c| f64::from(c).clamp(-FARTHEST, FARTHEST));
-    let (from, to) = (place(a), place(b));
+    let clamped = |at: (f32, f32)| [at.0, at.1].map(|c| f64::from(c).clamp(-FARTHEST, FARTHEST));
+    let (from, to) = (clamped(a), clamped(b));
     let low = [frame.left, frame.top].map(f64::from);
     let high = [frame.right(), frame.bottom()].map(f64::from);
     let (mut first, mut last) = (0.0_f64, 1.0_f64);
@@ -71,16 +71,16 @@ mod tests {
         let inside = [(1.0, 1.0), (2.0, 3.0), (4.0, 3.0)];
         assert_eq!(stretches(&inside, &FRAME), [inside.to_vec()]);
         let out_and_in = [(5.0, 5.0), (15.0, 5.0), (15.0, 8.0), (-5.0, 8.0)];
-        let found = stretches(&out_and_in, &FRAME);
+        let parts = stretches(&out_and_in, &FRAME);
         let known = [vec![(5.0, 5.0), (10.0, 5.0)], vec![(10.0, 8.0), (0.0, 8.0)]];
-        assert_eq!(found, known);
+        assert_eq!(parts, known);
         assert!(stretches(&[(-1.0, -1.0), (-1.0, 20.0)], &FRAME).is_empty());
     }
 
     #[test]
     fn the_slope_stays_however_far_a_line_goes() {
-        let found = stretches(&[(5.0, 5.0), (1e20, 2e20)], &FRAME);
-        assert_eq!(found, [vec![(5.0, 5.0), (7.5, 10.0)]]);
+        let parts = stretches(&[(5.0, 5.0), (1e20, 2e20)], &FRAME);
+        assert_eq!(parts, [vec![(5.0, 5.0), (7.5, 10.0)]]);
         assert_eq!(
             stretches(&[(5.0, 5.0), (5.0, f32::INFINITY)], &FRAME)[0][1],
             (5.0, 10.0)

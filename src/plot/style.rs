@@ -10,7 +10,7 @@ pub const WIDTH: u32 = 1200;
 const PANELS_WIDTH: u32 = 1800;
 
 /// Default width of a picture of some panels (pixels).
-pub fn usual_width(panels: usize) -> u32 {
+pub fn default_width(panels: usize) -> u32 {
     if panels > 1 { PANELS_WIDTH } else { WIDTH }
 }
 
@@ -32,7 +32,7 @@ impl Style {
 
     /// Lengths for a picture of a width with some panels.
     pub fn of(width: u32, panels: usize) -> Self {
-        Self::new(width, usual_width(panels))
+        Self::new(width, default_width(panels))
     }
 
     pub fn title(self) -> f32 {
@@ -77,13 +77,13 @@ impl Style {
         self.tick() + self.small() + self.text() + 3.0 * self.gap()
     }
 
-    /// Height of what stands below frames without axes: the directions of the model's axes, and a
+    /// Height of the marks below frames without axes: the directions of the model's axes, and a
     /// length.
     pub fn beneath(self) -> f32 {
         104.0 * self.unit
     }
 
-    /// Width of what stands left of a frame with these numbers: label, numbers, marks.
+    /// Width left of a frame with these numbers: label, numbers, marks.
     pub fn beside(self, ticks: &Ticks) -> f32 {
         self.tick() + self.widest(ticks) + self.text() + 3.0 * self.gap()
     }

@@ -17,7 +17,7 @@ pub struct Element {
     pub tag: &'static str,
     /// `x="1" y="2"`, the values without `"`, `<` and `&`.
     pub attributes: String,
-    /// What stands in it, as it is to be read.
+    /// Its text, as it is to be read.
     pub text: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Where the marks of an axis sit and what stands beside them.
+//! The marks of an axis and their numbers.
 
 use super::units::{fixed, superscript};
 
@@ -85,7 +85,7 @@ pub fn nice_step(least: f64) -> f64 {
         .unwrap_or(10.0 * power)
 }
 
-/// Decimals that tell the multiples of a step apart.
+/// Decimals that separate the multiples of a step.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

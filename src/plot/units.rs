@@ -19,7 +19,7 @@ pub fn decimals(largest: f64) -> usize {
 pub fn times(times: &[f64]) -> Vec<String> {
     let largest = times.iter().copied().fold(0.0, f64::max);
     let unit = Readable::new("s", largest);
-    // As few decimals as tell each time to two thousandths of the largest.
+    // As few decimals as separate each time to two thousandths of the largest.
     let most = match largest {
         0.0 => 0,
         largest => decimals(largest / unit.size),
@@ -86,7 +86,7 @@ fn number(text: &str, unit: &str) -> Option<f64> {
     let unit = tidy(unit);
     let (digits, suffix) = units::split(text)?;
     if tidy(suffix) == unit {
-        // Whatever that stands for in a table of somebody else's.
+        // Any of its meanings in tables of other programs.
         return digits.parse().ok().filter(|value: &f64| value.is_finite());
     }
     let (value, powers) = units::parse(text).ok()?;

@@ -34,13 +34,13 @@ impl Brick {
         }
     }
 
-    /// Whether nothing is inside.
+    /// `true` if nothing is inside.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         (0..3).any(|a| self.lower[a] >= self.upper[a])
     }
 
-    /// Whether a position (m) is inside.
+    /// `true` if a position (m) is inside.
     #[inline]
     #[must_use]
     pub fn holds(&self, position: &[f64; 3]) -> bool {

@@ -5,10 +5,9 @@ use super::row::{Cut, Row, layers, rows_of_layer};
 
 /// Smallest and largest coordinates (m) of the sites that the cuts leave, if any are left.
 ///
-/// Layers of one kind have the same sites but for what the shape cuts off, and that is more the
-/// farther a layer lies from the centre: the one that is nearest has all the sites of the others,
-/// seen along z. Only a hole may hide some of them, and where it hides an outermost one all layers
-/// count.
+/// Layers of one kind have the same sites but for those that the shape cuts off, which are more the
+/// farther a layer lies from the centre: the nearest one has all the sites of the others, seen
+/// along z. Only a hole may hide some of them, and if it hides an outermost one all layers count.
 pub(super) fn extremes(stack: &Stack, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
     let layers = layers(stack, cuts);
     let holds = |k: &u64| rows_of_layer(stack, cuts, *k).next().is_some();
@@ -34,15 +33,15 @@ pub(super) fn extremes(stack: &Stack, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
 
 /// Smallest and largest x and y (m) of some layers.
 fn across(stack: &Stack, cuts: &[Cut], layers: impl Iterator<Item = u64>) -> [[f64; 2]; 2] {
-    let mut found = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+    let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     for Row { j, k, first, end } in layers.flat_map(|k| rows_of_layer(stack, cuts, k)) {
         // Coordinates are monotone along a row, so its ends suffice.
         for i in [first, end - 1] {
             let p = stack.position(i, j, k);
-            for (ends, x) in found.iter_mut().zip(p) {
+            for (ends, x) in bounds.iter_mut().zip(p) {
                 *ends = [ends[0].min(x), ends[1].max(x)];
             }
         }
     }
-    found
+    bounds
 }

@@ -1,4 +1,4 @@
-//! What fills a body, asked once: rows of a file, layers, tiles or rows of a lattice.
+//! The filling of a body: rows of a file, layers, tiles or rows of a lattice.
 
 use super::cells::{self, Cells};
 use super::extremes;
@@ -57,15 +57,16 @@ impl Filling {
         }
     }
 
-    /// Tells them as they stand before they are fitted; `each` as for [`Self::sites`].
-    pub fn places(self, cuts: Vec<Cut>, each: f64, tell: impl FnMut(Site)) {
+    /// Passes the sites to `emit` as they are before they are fitted; `each` as for
+    /// [`Self::sites`].
+    pub fn emit_unfitted(self, cuts: Vec<Cut>, each: f64, emit: impl FnMut(Site)) {
         match self {
-            Self::Cells(cells) => cells.places(&cuts, tell),
-            _ => self.sites(cuts, each).for_each(tell),
+            Self::Cells(cells) => cells.emit_unfitted(&cuts, emit),
+            _ => self.sites(cuts, each).for_each(emit),
         }
     }
 
-    /// How many there are.
+    /// The number of sites.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
         match self {
             Self::Given(given) => given.count(cuts),

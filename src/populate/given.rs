@@ -14,7 +14,7 @@ const FEW: usize = 4;
 #[derive(Debug, Clone)]
 pub(super) struct Given {
     cloud: Arc<Cloud>,
-    /// Where their origin stands (m).
+    /// The position of their origin (m).
     at: Vec3,
 }
 
@@ -29,7 +29,7 @@ impl Given {
     }
 
     fn moved(&self, x: &[f64; 3]) -> [f64; 3] {
-        // What does not move keeps its bits.
+        // Unmoved coordinates keep their bits.
         [0, 1, 2].map(|a| {
             if self.at[a] == 0.0 {
                 x[a]
@@ -49,7 +49,7 @@ impl Given {
     }
 
     /// Tells the rows that the cuts leave by runs of their places in the order of the tree.
-    fn runs(&self, cuts: &[Cut], mut tell: impl FnMut(usize, usize)) {
+    fn runs(&self, cuts: &[Cut], mut emit: impl FnMut(usize, usize)) {
         let mut waiting = vec![(0, self.cloud.count())];
         while let Some((first, end)) = waiting.pop() {
             if first == end {
@@ -61,12 +61,12 @@ impl Given {
             }
             let keeps = |cut: &Cut| cut.keeps(&lower) && cut.keeps(&upper);
             if cuts.iter().all(keeps) {
-                tell(first, end);
+                emit(first, end);
             } else if end - first <= FEW {
-                for place in first..end {
-                    let row = self.cloud.order()[place] as usize;
+                for slot in first..end {
+                    let row = self.cloud.order()[slot] as usize;
                     if self.is_left(row, cuts) {
-                        tell(place, place + 1);
+                        emit(slot, slot + 1);
                     }
                 }
             } else {
@@ -108,7 +108,7 @@ impl Given {
         })
     }
 
-    /// How many there are.
+    /// The number of sites.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
         let mut count = 0;
         self.runs(cuts, |first, end| count += (end - first) as u64);
@@ -126,15 +126,15 @@ impl Given {
 
     /// Smallest and largest coordinates (m) of the rows that the cuts leave, if there are any.
     pub fn extremes(&self, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3])> {
-        let mut found: Option<([f64; 3], [f64; 3])> = None;
+        let mut bounds: Option<([f64; 3], [f64; 3])> = None;
         for row in (0..self.cloud.count()).filter(|&row| self.is_left(row, cuts)) {
             let x = self.position(row);
-            let (lower, upper) = found.get_or_insert((x, x));
+            let (lower, upper) = bounds.get_or_insert((x, x));
             for a in 0..3 {
                 (lower[a], upper[a]) = (lower[a].min(x[a]), upper[a].max(x[a]));
             }
         }
-        found
+        bounds
     }
 
     /// Tells the coordinates on an axis (m) of one of several shares of the rows.
@@ -169,10 +169,10 @@ impl Parts for GivenRows {
     }
 
     #[allow(clippy::cast_possible_truncation)] // as above
-    fn tell(&self, at: [u64; 3], mut tell: impl FnMut([f64; 3])) {
+    fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
         let row = self.given.cloud.order()[at[0] as usize] as usize;
         if self.given.is_left(row, &self.cuts) {
-            tell(self.given.position(row));
+            emit(self.given.position(row));
         }
     }
 }

@@ -13,7 +13,7 @@ const ROW: f64 = 0.866_025_403_784_438_6;
 /// √(2/3): distance of close-packed layers, in nearest distances.
 const LAYER: f64 = 0.816_496_580_927_726;
 
-/// More than sites of alternate rows and layers stand aside from each other, in spacings.
+/// More than the offset of sites of alternate rows and layers, in spacings.
 const MOST_ASIDE: f64 = 0.65;
 
 /// Sites this close to a face, relative to the body's half width, count as outside: whether a
@@ -29,8 +29,8 @@ pub(super) fn pitches(kind: LatticeKind, dimension: usize) -> [f64; 3] {
     }
 }
 
-/// Shifts of a row along itself and of a layer along y, for a spacing of one: alternate rows
-/// stand half a pitch apart, alternate layers a third of two rows, both evenly about zero.
+/// Shifts of a row along itself and of a layer along y, for a spacing of one: alternate rows are
+/// half a pitch apart, alternate layers a third of two rows, both evenly about zero.
 pub(super) fn shifts(kind: LatticeKind, dimension: usize, j: u64, k: u64) -> [f64; 2] {
     let sign = |odd: u64| if odd % 2 == 1 { 1.0 } else { -1.0 };
     match (kind, dimension) {
@@ -43,7 +43,7 @@ pub(super) fn shifts(kind: LatticeKind, dimension: usize, j: u64, k: u64) -> [f6
     }
 }
 
-/// Which sites of the bounding lattice belong to the body.
+/// The sites of the bounding lattice that belong to the body.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inside {
     /// Half width of the faces that the lattice does not fill exactly; infinite elsewhere (m).
@@ -57,12 +57,12 @@ pub(super) struct Inside {
 }
 
 impl Inside {
-    /// Whether an offset from the centre (m) lies within the outer faces of the body.
+    /// `true` if an offset from the centre (m) lies within the outer faces of the body.
     pub fn contains(&self, o: [f64; 3]) -> bool {
         (0..3).all(|a| o[a].abs() < self.flat[a]) && self.square(o) < self.radius_squared
     }
 
-    /// Whether an offset from the centre (m) lies in the hole.
+    /// `true` if an offset from the centre (m) lies in the hole.
     pub fn hollows(&self, o: [f64; 3]) -> bool {
         self.square(o) < self.hole_squared
     }
@@ -87,7 +87,7 @@ pub(super) struct Stack {
     innermost: f64,
     /// Their distances (m); those of a lattice that is fitted are its own by axis.
     pub pitch: [f64; 3],
-    /// What the shape cuts out of the lattice.
+    /// The part of the lattice that the shape cuts out.
     pub inside: Inside,
 }
 
@@ -120,7 +120,7 @@ impl Stack {
                 if !round[a] {
                     flat[a] = half[a] * FACE;
                 }
-                // An even number of layers stands half a pitch off the centre; one more on each
+                // The layers of an even number are half a pitch off the centre; one more on each
                 // side has room for the shifts.
                 as_count((turned_half(half, turn, a) / pitch[a]).ceil() + 1.0).saturating_mul(2)
             };
@@ -171,8 +171,8 @@ impl Stack {
         ]
     }
 
-    /// How many kinds of layers follow each other in turn: layers of one kind have their sites at
-    /// the same x and y, to the bit.
+    /// The number of kinds of layers that follow each other in turn: layers of one kind have their
+    /// sites at the same x and y, to the bit.
     pub fn layer_kinds(&self) -> u64 {
         match (self.kind, self.dimension) {
             (LatticeKind::Hexagonal, 3) => 2,
@@ -180,12 +180,12 @@ impl Stack {
         }
     }
 
-    /// Whether the shape cuts the same out of all layers of a kind.
+    /// `true` if the shape cuts the same out of all layers of a kind.
     pub fn has_layers_alike(&self) -> bool {
         self.inside.round[2] == 0.0
     }
 
-    /// Whether rows are along x, so that y is the same to the bit all along one.
+    /// `true` if rows are along x, so that y is the same to the bit all along one.
     pub fn is_along_x(&self) -> bool {
         !self.has_rings() && self.turn[1] == 0.0
     }
@@ -234,7 +234,7 @@ impl Stack {
         (lower, upper)
     }
 
-    /// Whether a box (m) may hold sites of the body.
+    /// `true` if a box (m) may hold sites of the body.
     pub fn may_hold(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
         let [nearest, farthest] = [0, 1].map(|far| {
             std::array::from_fn(|a| {
@@ -253,7 +253,7 @@ impl Stack {
             || (self.inside.contains(inward(nearest)) && !self.inside.hollows(outward(farthest)))
     }
 
-    /// Whether a site of the lattice, by its indices, belongs to the body.
+    /// `true` if a site of the lattice, by its indices, belongs to the body.
     pub fn holds(&self, [i, j, k]: [u64; 3]) -> bool {
         if self.has_rings() {
             return i < self.sites(j);
@@ -262,7 +262,7 @@ impl Stack {
         self.inside.contains(offset) && !self.inside.hollows(offset)
     }
 
-    /// Whether rows are quarters of rings: whole rows belong to the body.
+    /// `true` if rows are quarters of rings: whole rows belong to the body.
     pub fn has_rings(&self) -> bool {
         self.kind == LatticeKind::Rings
     }

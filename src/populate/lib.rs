@@ -32,7 +32,7 @@ use row::cuts;
 #[cfg(test)]
 mod tests;
 
-/// How much of lattices a thread has looked at, for tests of what may not grow.
+/// The number of visited rows and blocks of a thread, for tests of what may not grow.
 #[cfg(test)]
 pub(crate) mod visits {
     use std::cell::Cell;
@@ -41,7 +41,7 @@ pub(crate) mod visits {
         static VISITS: Cell<u64> = const { Cell::new(0) };
     }
 
-    /// Books one more row, or block of sites.
+    /// Counts one more row, or block of sites.
     pub fn add() {
         VISITS.set(VISITS.get() + 1);
     }
@@ -68,31 +68,31 @@ pub struct Site {
     pub share: f64,
 }
 
-/// What a [`search`] is for.
+/// The purpose of a [`search`].
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// So many sites at most.
     pub most: usize,
     /// Only sites with smaller values.
     pub limit: f64,
-    /// Whether any such sites do, be their values the smallest or not.
+    /// `true` for any such sites, be their values the smallest or not.
     pub any: bool,
 }
 
 /// One of several equal parts of the rows or blocks of a body, for ranks that count together.
 #[derive(Debug, Clone, Copy)]
 pub struct Share {
-    /// Which part.
+    /// Number of the part.
     pub part: usize,
-    /// How many there are.
+    /// Number of parts.
     pub parts: usize,
 }
 
 /// The sites of a body above all symmetry planes and, if given, in a brick, in the order of their
 /// index.
 ///
-/// Only what of the filling meets the brick is visited; inside a row of a lattice no site is tested.
-/// Bricks part fitted sites by where they stand before they are fitted.
+/// Only the part of the filling that meets the brick is visited; inside a row of a lattice no site
+/// is tested. Bricks divide fitted sites by their positions before they are fitted.
 pub fn sites(
     body: &Body,
     dimension: usize,
@@ -103,19 +103,19 @@ pub fn sites(
     filling.sites(cuts(symmetry, brick), particle_volume(body, dimension))
 }
 
-/// Tells the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick as they stand
-/// before they are fitted.
-pub fn places(
+/// Passes the [`sites`] of a body (in a dimension, above all symmetry planes) in a brick to `emit`
+/// as they are before they are fitted.
+pub fn emit_unfitted(
     (body, dimension, symmetry): (&Body, usize, &[SymmetryPlane]),
     brick: Brick,
-    tell: impl FnMut(Site),
+    emit: impl FnMut(Site),
 ) {
     let filling = Filling::of(body, dimension, symmetry);
     let each = particle_volume(body, dimension);
-    filling.places(cuts(symmetry, Some(brick)), each, tell);
+    filling.emit_unfitted(cuts(symmetry, Some(brick)), each, emit);
 }
 
-/// How many [`sites`] there are, without visiting each, and of layers that are alike only one.
+/// The number of [`sites`], without a visit to each, and of layers that are alike only to one.
 #[must_use]
 pub fn count(
     body: &Body,
@@ -126,9 +126,9 @@ pub fn count(
     Filling::of(body, dimension, symmetry).count(&cuts(symmetry, brick))
 }
 
-/// Tells the coordinates on an axis (m) of a share of the [`sites`] of a body above all symmetry
-/// planes, with the number of sites that stand there; in any order, and a coordinate may come
-/// several times.
+/// Passes the coordinates on an axis (m) of a share of the [`sites`] of a body above all symmetry
+/// planes to `add`, with the number of sites there; in any order, and a coordinate may come several
+/// times.
 ///
 /// It looks once at each row of the share, and of layers that are alike at one only. Lattices that
 /// are turned also take one step for each site of the largest layer.
@@ -204,7 +204,7 @@ pub fn smallest_gap(
         limit: reach,
         any: false,
     };
-    let found = search(
+    let nearest = search(
         (body, dimension, symmetry),
         wanted,
         |lower, upper| {
@@ -212,7 +212,7 @@ pub fn smallest_gap(
         },
         |x| surface.gap(x, reach) - body.lattice.wider(x),
     );
-    found.first().map_or(f64::INFINITY, |(gap, _)| *gap)
+    nearest.first().map_or(f64::INFINITY, |(gap, _)| *gap)
 }
 
 /// Volume of one particle of the body (m³; m² or m in two or one dimensions), so that its mass is
@@ -247,8 +247,8 @@ pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 
     Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
 }
 
-/// Whether sites end elsewhere than where bricks are cut: particles may begin a spacing outside the
-/// brick whose sites they are.
+/// `true` if sites are moved after bricks are cut: particles may begin a spacing outside the brick
+/// whose sites they are.
 #[must_use]
 pub fn moves_sites(body: &Body) -> bool {
     body.lattice.kind == LatticeKind::Glass

@@ -1,4 +1,4 @@
-//! How far two bodies begin within each other.
+//! The initial overlap of two bodies.
 
 use super::{Wanted, search};
 use model::{Body, Case, Vec3};
@@ -62,7 +62,7 @@ fn deepest(case: &Case, body: &Body, other: &Body) -> Option<Overlap> {
     overlaps.find(confirmed)
 }
 
-/// Whether a body has a particle closer to a point than `near` (m).
+/// `true` if a body has a particle closer to a point than `near` (m).
 fn has_particle(case: &Case, body: &Body, point: [f64; 3], near: f64) -> bool {
     let point = Vec3::from(point);
     let wanted = Wanted {
@@ -71,11 +71,11 @@ fn has_particle(case: &Case, body: &Body, point: [f64; 3], near: f64) -> bool {
         any: true,
     };
     let distance = |x: Vec3| (x - point).norm();
-    let found = search(
+    let nearest = search(
         (body, case.dimension, &case.symmetry),
         wanted,
         |lower, upper| distance(Vec3::from_fn(|a, _| point[a].clamp(lower[a], upper[a]))),
         |x| distance(Vec3::from(*x)),
     );
-    !found.is_empty()
+    !nearest.is_empty()
 }

@@ -17,7 +17,7 @@ pub(super) trait Parts {
     fn around(&self, first: [u64; 3], end: [u64; 3]) -> Option<([f64; 3], [f64; 3])>;
 
     /// Tells the sites (m) of a part of one index each.
-    fn tell(&self, at: [u64; 3], tell: impl FnMut([f64; 3]));
+    fn emit(&self, at: [u64; 3], emit: impl FnMut([f64; 3]));
 }
 
 /// A part, with a bound of what is in it.
@@ -71,9 +71,9 @@ pub(super) fn best(
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
-    let mut found: Vec<(f64, [f64; 3])> = Vec::new();
-    let worst_of = |found: &[(f64, [f64; 3])]| match found.last() {
-        Some((worst, _)) if found.len() == wanted.most => *worst,
+    let mut nearest: Vec<(f64, [f64; 3])> = Vec::new();
+    let worst_of = |nearest: &[(f64, [f64; 3])]| match nearest.last() {
+        Some((worst, _)) if nearest.len() == wanted.most => *worst,
         _ => wanted.limit,
     };
     let whole = Block {
@@ -86,7 +86,7 @@ pub(super) fn best(
     while let Some(block) = waiting.pop() {
         #[cfg(test)]
         super::visits::add();
-        let worst = worst_of(&found);
+        let worst = worst_of(&nearest);
         if block.bound >= worst {
             break;
         }
@@ -101,17 +101,17 @@ pub(super) fn best(
             }
             continue;
         }
-        parts.tell(block.first, |position| {
+        parts.emit(block.first, |position| {
             let value = value(&position);
-            if value < worst_of(&found) {
-                let place = found.partition_point(|(other, _)| *other <= value);
-                found.truncate(wanted.most - 1);
-                found.insert(place, (value, position));
+            if value < worst_of(&nearest) {
+                let slot = nearest.partition_point(|(other, _)| *other <= value);
+                nearest.truncate(wanted.most - 1);
+                nearest.insert(slot, (value, position));
             }
         });
-        if wanted.any && found.len() == wanted.most {
+        if wanted.any && nearest.len() == wanted.most {
             break;
         }
     }
-    found
+    nearest
 }

@@ -35,7 +35,7 @@ pub(super) struct Cut {
     upper: f64,
 }
 
-/// What all symmetry planes and a brick leave.
+/// The cuts of all symmetry planes and a brick.
 pub(super) fn cuts(symmetry: &[SymmetryPlane], brick: Option<Brick>) -> Vec<Cut> {
     let planes = symmetry.iter().map(|plane| Cut {
         axis: plane.axis.index(),
@@ -57,7 +57,7 @@ pub(super) fn cuts(symmetry: &[SymmetryPlane], brick: Option<Brick>) -> Vec<Cut>
 }
 
 impl Cut {
-    /// Whether it cuts anything off.
+    /// `true` if it cuts anything off.
     fn is_any(&self) -> bool {
         self.lower > f64::NEG_INFINITY || self.upper < f64::INFINITY
     }
@@ -80,13 +80,13 @@ impl Cut {
         }
     }
 
-    /// Whether a position (m) is left.
+    /// `true` if a position (m) is left.
     pub fn keeps(&self, position: &[f64; 3]) -> bool {
         let x = position[self.axis];
         !self.is_below(x) && !self.is_above(x)
     }
 
-    /// Whether nothing of a box (m) is left.
+    /// `true` if nothing of a box (m) is left.
     pub fn drops(&self, lower: &[f64; 3], upper: &[f64; 3]) -> bool {
         self.is_below(upper[self.axis]) || self.is_above(lower[self.axis])
     }
@@ -122,7 +122,8 @@ pub(super) fn layers(stack: &Stack, cuts: &[Cut]) -> Range<u64> {
     })
 }
 
-/// What shape and cuts leave of row `j` in layer `k`, before and behind a hole; both may be empty.
+/// The part of row `j` in layer `k` that shape and cuts leave, before and behind a hole; both may
+/// be empty.
 pub(super) fn runs(stack: &Stack, cuts: &[Cut], j: u64, k: u64) -> [Row; 2] {
     let (step, start) = (stack.step(j), stack.position(0, j, k));
     // Along a row that is normal to an axis the coordinate is the same to the bit.
@@ -207,7 +208,7 @@ struct Line<'a> {
 
 impl Line<'_> {
     /// The run within flat faces and a radius: estimated from the formulas of the line, then
-    /// settled by a test of the sites at its ends.
+    /// narrowed by a test of the sites at its ends.
     fn run(
         &self,
         flat: [f64; 3],
@@ -238,13 +239,13 @@ impl Line<'_> {
                 high = high.min((-half + root) / squared);
             }
         }
-        self.settle(low, high, contains)
+        self.narrow(low, high, contains)
     }
 
     /// Indices in `[low, high]`, one more at each side for rounding, less those that are not
     /// contained.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped before
-    fn settle(&self, low: f64, high: f64, contains: impl Fn([f64; 3]) -> bool) -> Range<u64> {
+    fn narrow(&self, low: f64, high: f64, contains: impl Fn([f64; 3]) -> bool) -> Range<u64> {
         let Self { stack, j, k, .. } = *self;
         if high < low - 1.0 || stack.counts[0] == 0 {
             return 0..0;

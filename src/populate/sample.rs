@@ -3,7 +3,7 @@
 use super::{Site, count, sites};
 use model::{Body, LatticeKind, SymmetryPlane};
 
-/// How much wider a lattice is from one try to the next.
+/// Ratio of the spacings of one try and the one before.
 const WIDER: f64 = 1.2;
 
 /// The sites of a body above all symmetry planes and whether these are all of them: of a body with more
@@ -15,11 +15,11 @@ pub fn sample(
     most: u64,
 ) -> (impl Iterator<Item = Site> + use<>, bool) {
     let mut coarse = body.clone();
-    let mut found = count(body, dimension, symmetry, None);
-    let is_all = found <= most;
+    let mut particles = count(body, dimension, symmetry, None);
+    let is_all = particles <= most;
     // Of particles that a file gives every few are taken.
     let every = if body.cloud().is_some() {
-        found.div_ceil(most).max(1)
+        particles.div_ceil(most).max(1)
     } else {
         1
     };
@@ -29,14 +29,14 @@ pub fn sample(
         coarse.lattice.axis = None;
         coarse.lattice.fit = false;
         coarse.lattice.grade(None);
-        while found > most {
+        while particles > most {
             coarse.lattice.spacing *= WIDER;
-            found = count(&coarse, dimension, symmetry, None);
+            particles = count(&coarse, dimension, symmetry, None);
         }
         // Thin bodies lose their last layer at once.
-        while found == 0 {
+        while particles == 0 {
             coarse.lattice.spacing /= WIDER;
-            found = count(&coarse, dimension, symmetry, None);
+            particles = count(&coarse, dimension, symmetry, None);
         }
     }
     let every = usize::try_from(every).unwrap_or(usize::MAX);

@@ -41,11 +41,11 @@ impl Parts for Rows {
         (!is_cut && self.stack.may_hold(&lower, &upper)).then_some((lower, upper))
     }
 
-    fn tell(&self, at: [u64; 3], mut tell: impl FnMut([f64; 3])) {
+    fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
         let [i, j, k] = at;
         let position = self.stack.position(i, j, k);
         if self.stack.holds(at) && self.cuts.iter().all(|cut| cut.keeps(&position)) {
-            tell(position);
+            emit(position);
         }
     }
 }

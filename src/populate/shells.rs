@@ -1,4 +1,4 @@
-//! Concentric layers of round bodies: on each the particles stand in rings about an axis of its own,
+//! Concentric layers of round bodies: on each the particles are in rings about an axis of its own,
 //! all with the same part of its area.
 
 use std::f64::consts::{PI, TAU};
@@ -13,7 +13,7 @@ use model::{Body, LatticeKind, Shape, Vec3};
 const FEW: u64 = 8;
 /// More layers than any body has that can be run.
 const MOST_LAYERS: f64 = 1e5;
-/// Rings follow each other by this part of a turn, the root of three less one: rings of two stand
+/// Rings follow each other by this part of a turn, the root of three less one: rings of two are
 /// nearly across, and there are no near repeats.
 const ONWARD: f64 = 0.732_050_807_568_877_3;
 
@@ -151,7 +151,7 @@ impl Shells {
     }
 
     /// Tells the runs of sites of a ring that the cuts leave, in order.
-    fn runs(&self, layer: &Layer, ring: &Ring, cuts: &[Cut], mut tell: impl FnMut(u64, u64)) {
+    fn runs(&self, layer: &Layer, ring: &Ring, cuts: &[Cut], mut emit: impl FnMut(u64, u64)) {
         let mut waiting = vec![(0, ring.end - ring.first)];
         while let Some((first, end)) = waiting.pop() {
             if first == end {
@@ -163,12 +163,12 @@ impl Shells {
             }
             let keeps = |cut: &Cut| cut.keeps(&lower) && cut.keeps(&upper);
             if cuts.iter().all(keeps) {
-                tell(first, end);
+                emit(first, end);
             } else if end - first <= FEW {
                 for number in first..end {
                     let position = self.position(layer, ring, number);
                     if cuts.iter().all(|cut| cut.keeps(&position)) {
-                        tell(number, number + 1);
+                        emit(number, number + 1);
                     }
                 }
             } else {
@@ -198,7 +198,7 @@ impl Shells {
         })
     }
 
-    /// How many there are.
+    /// The number of sites.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
         let mut count = 0;
         for (layer, ring) in self.rings() {
@@ -270,7 +270,7 @@ impl Layer {
         }
     }
 
-    /// How many sites stand in the rings before one.
+    /// The number of sites in the rings before one.
     fn before(&self, ring: u64) -> u64 {
         let angle = PI * (ring as f64 / self.rings as f64);
         (0.5 * self.sites as f64 * (1.0 - libm::cos(angle))).round() as u64
@@ -346,7 +346,7 @@ impl Parts for Rings<'_> {
     }
 
     #[allow(clippy::cast_possible_truncation)] // as above
-    fn tell(&self, at: [u64; 3], mut tell: impl FnMut([f64; 3])) {
+    fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
         let layer = &self.shells.layers[at[2] as usize];
         if at[1] >= layer.rings {
             return;
@@ -355,7 +355,7 @@ impl Parts for Rings<'_> {
         if at[0] < ring.end - ring.first {
             let position = self.shells.position(layer, &ring, at[0]);
             if self.cuts.iter().all(|cut| cut.keeps(&position)) {
-                tell(position);
+                emit(position);
             }
         }
     }

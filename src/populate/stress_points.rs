@@ -1,11 +1,10 @@
-//! Where the stress points of a body stand: half way between particles that are next to each other
+//! Positions of the stress points of a body: half way between particles that are next to each other
 //! along an axis of a cubic lattice.
 //!
 //! Each particle splits its volume evenly between the axes, and between the two points beside it
-//! along each. Where one of them is missing, at a surface, its share goes evenly to the points
-//! across, those along other axes, so that a body carries stress along its surfaces with all of its
-//! cross-section; where there are none across, as at the ends of a bar in one dimension, it bears
-//! no stress.
+//! along each. If one of them is missing, at a surface, its share goes evenly to the points across,
+//! those along other axes, so that a body carries stress along its surfaces with all of its
+//! cross-section; without any across, as at the ends of a bar in one dimension, it bears no stress.
 
 use super::lattice::Stack;
 use super::{Brick, row};
@@ -22,13 +21,13 @@ pub struct StressSite {
     pub share: f64,
 }
 
-/// A particle is next to its image behind a symmetry plane if it stands between these parts of a
-/// pitch from it, along an axis of the lattice.
+/// A particle is next to its image behind a symmetry plane if it is between these parts of a pitch
+/// from it, along an axis of the lattice.
 const NEXT: [f64; 2] = [0.25, 0.75];
 /// Cosine of an angle that is none.
 const ALONG: f64 = 1.0 - 1e-6;
 
-/// What a particle has beside it on one side along one axis.
+/// The neighbour of a particle on one side along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Beside {
     Nothing,
@@ -58,16 +57,16 @@ pub fn stress_sites(
         .flat_map(|row| row.range().map(move |i| [i, row.j, row.k]))
         .flat_map(move |site| {
             let sides = 2 * dimension;
-            let found: [Option<StressSite>; 6] = std::array::from_fn(|side| {
+            let sites: [Option<StressSite>; 6] = std::array::from_fn(|side| {
                 let own = !grid.rigid && side < sides;
                 own.then(|| grid.point(site, side)).flatten()
             });
-            found.into_iter().flatten()
+            sites.into_iter().flatten()
         })
         .filter(within)
 }
 
-/// How many [`stress_sites`] there are.
+/// The number of [`stress_sites`].
 #[must_use]
 pub fn stress_count(
     body: &Body,
@@ -125,7 +124,7 @@ impl Grid {
         })
     }
 
-    /// How much of its volume a particle gives to the point on one side.
+    /// The share of its volume that a particle gives to the point on one side.
     fn share(&self, site: [u64; 3], side: usize) -> f64 {
         let sides = 2 * self.dimension;
         let part = 1.0 / f64::from([1_u8, 2, 4, 6][self.dimension]);

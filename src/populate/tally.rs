@@ -1,4 +1,4 @@
-//! How many sites stand at which coordinate of an axis, counted row by row and not site by site.
+//! The number of sites at each coordinate of an axis, counted row by row and not site by site.
 
 use super::Share;
 use super::lattice::Stack;
@@ -39,7 +39,7 @@ impl LikeLayers {
     }
 }
 
-/// Tells the coordinates on an axis (m) of a share of the rows, with the number of sites that stand
+/// Passes the coordinates on an axis (m) of a share of the rows to `add`, with the number of sites
 /// there.
 pub(super) fn tally_rows(
     stack: &Stack,
@@ -71,8 +71,8 @@ pub(super) fn tally_rows(
         }
         return;
     }
-    // Sites with the same index in rows with the same shift stand at the same x, those of one row
-    // in layers of one kind at the same place across.
+    // Sites with the same index in rows with the same shift are at the same x, those of one row in
+    // layers of one kind at the same coordinate across.
     let is_along_x = stack.is_along_x();
     let mut columns = [0, 1].map(|_| Columns::new(stack));
     for j in rows() {
@@ -91,12 +91,12 @@ pub(super) fn tally_rows(
         }
         if !is_along_x {
             for columns in &mut columns {
-                columns.tell(stack, axis, &mut add);
+                columns.emit(stack, axis, &mut add);
             }
         }
     }
     for columns in &mut columns {
-        columns.tell(stack, axis, &mut add);
+        columns.emit(stack, axis, &mut add);
     }
 }
 
@@ -106,7 +106,7 @@ struct Columns {
     row: [u64; 2],
     /// By how much the number of sites differs from that of the index before.
     steps: Vec<i64>,
-    /// Whether anything was added.
+    /// `true` if anything was added.
     has_any: bool,
 }
 
@@ -135,7 +135,7 @@ impl Columns {
 
     /// Tells what was added, and forgets it.
     #[allow(clippy::cast_sign_loss, reason = "counts are positive")]
-    fn tell(&mut self, stack: &Stack, axis: usize, add: &mut impl FnMut(f64, u64)) {
+    fn emit(&mut self, stack: &Stack, axis: usize, add: &mut impl FnMut(f64, u64)) {
         if !std::mem::take(&mut self.has_any) {
             return;
         }

@@ -312,13 +312,13 @@ fn rings_follow_the_outline() {
         parts.sort_unstable();
         assert_eq!(parts, whole);
         if dimension == 2 {
-            let places = |flip: f64| {
+            let positions = |flip: f64| {
                 let flipped = sites.iter().map(|s| [s.position[0] * flip, s.position[1]]);
-                let mut places: Vec<_> = flipped.map(|p| p.map(f64::to_bits)).collect();
-                places.sort_unstable();
-                places
+                let mut positions: Vec<_> = flipped.map(|p| p.map(f64::to_bits)).collect();
+                positions.sort_unstable();
+                positions
             };
-            assert_eq!(places(1.0), places(-1.0));
+            assert_eq!(positions(1.0), positions(-1.0));
             let quarter = count(&body, 2, &planes(), None);
             assert_eq!(4 * quarter, sites.len() as u64);
         }

@@ -6,9 +6,9 @@ use super::lattice::{pitches, shifts};
 use model::{Axis, Body, LatticeKind};
 use numerics::kernel::{Kernel, SUPPORT};
 
-/// How far `body` has to move along `axis` (m, signed) to come into touch with `other`, when it
-/// moves towards larger (`forward`) or smaller coordinates: the outermost particle layers of the
-/// two then lie one mean spacing apart. `None` if a body has no particles.
+/// The distance by which `body` has to move along `axis` (m, signed) to come into touch with
+/// `other`, when it moves towards larger (`forward`) or smaller coordinates: the outermost particle
+/// layers of the two then lie one mean spacing apart. `None` if a body has no particles.
 #[must_use]
 pub fn touching_distance(
     body: &Body,
@@ -31,9 +31,9 @@ pub fn touching_distance(
 /// Smallest and largest coordinates (m) of the outermost layers of a body; where the spacing is
 /// graded, of such as the finest would have: half a spacing below the faces.
 fn layers(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
-    let found = bounds(body, dimension)?;
+    let extent = bounds(body, dimension)?;
     if body.lattice.grading.is_none() {
-        return Some(found);
+        return Some(extent);
     }
     let (lower, upper) = body.shape.solid(dimension).bounds();
     let half = 0.5 * body.lattice.spacing;
@@ -47,7 +47,7 @@ fn layers(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
 /// particle of `a` one mean spacing in front of the flat face of a half-space of `b`, with the
 /// cubic B-spline at the mean smoothing length.
 ///
-/// The particle stands straight before a particle of the first layer. Elsewhere along the face of a
+/// The particle is straight before a particle of the first layer. Elsewhere along the face of a
 /// cubic lattice the sum differs by −.004 to .002 for h = 1.0–1.5 Δp; contact's initial overlap
 /// offset forgives the difference at the start. The face of a cubic lattice is a cube face; that of
 /// a hexagonal one is its close-packed layer (normal to z), in two dimensions its close-packed row.
@@ -56,7 +56,7 @@ pub fn touching_value(a: &Body, b: &Body, dimension: usize) -> f64 {
     let h = 0.5 * (a.smoothing_length + b.smoothing_length);
     let gap = 0.5 * (a.lattice.spacing + b.lattice.spacing);
     if !has_rows(b) {
-        // No face of its lattice faces the particle: matter is smeared out.
+        // No face of its lattice faces the particle: the volume is spread evenly.
         return even_fraction(gap - 0.5 * b.lattice.spacing, dimension, h);
     }
     half_space_fraction(b.lattice.kind, b.lattice.spacing, dimension, gap, h)

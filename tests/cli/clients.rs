@@ -11,7 +11,7 @@ use crate::python::python;
 
 use comm::Comm;
 use files::output::Rows;
-use files::output::snapshot::{self, Form};
+use files::output::snapshot::{self, SnapshotFormat};
 use particles::ParticleStore;
 
 fn root() -> &'static Path {
@@ -139,9 +139,9 @@ fn write_ours(path: &Path, total: u32, partition_rows: u64) {
         particles.density[row] = 1000.0 + f64::from(k);
     }
     let quantities = snapshot::quantities(&[]).expect("the usual ones");
-    let form = Form {
+    let form = SnapshotFormat {
         partition_rows,
-        ..Form::of(&quantities)
+        ..SnapshotFormat::of(&quantities)
     };
     let (comm, meta) = (Comm::solo(), crate::stored::meta(&case));
     let mut rows = Rows::default();

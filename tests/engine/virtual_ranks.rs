@@ -165,7 +165,7 @@ fn swap(comm: &Comm, said: usize, expected: usize) {
 const SLOW: Machine = Machine {
     latency: 0.25,
     bandwidth: 8.0,
-    computing: Computing::Told,
+    computing: Computing::Reported,
 };
 
 /// Bytes of a message, and the time that it takes on [`SLOW`] (s).

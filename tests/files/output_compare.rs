@@ -28,7 +28,7 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
         &path,
         &particles,
         &meta(&case),
-        &snapshot::Form::of(&fields),
+        &snapshot::SnapshotFormat::of(&fields),
         &mut rows,
     )
     .unwrap();

@@ -98,7 +98,7 @@ impl Bench {
             &path,
             particles,
             &meta,
-            &snapshot::Form::of(&fields),
+            &snapshot::SnapshotFormat::of(&fields),
             &mut rows,
         )
         .unwrap();

@@ -10,7 +10,7 @@ use crate::stored::{case, meta, particles, sorted_ids};
 use comm::Comm;
 use files::output::h5::read::SnapshotFile;
 use files::output::h5::{Content, Element, RowType};
-use files::output::snapshot::{Form, Part};
+use files::output::snapshot::{Portion, SnapshotFormat};
 use files::output::{Block, OutputError, Rows, checkpoint, snapshot};
 use model::{Precision, Sharing};
 use particles::{FIELDS, Life, ParticleStore, rows};
@@ -104,25 +104,25 @@ fn check_snapshot(path: &Path, total: u64, rows: u64) {
 }
 
 /// What has x above zero, or no x: some half of the particles.
-fn halves() -> Part {
-    let mut part = Part::default();
+fn halves() -> Portion {
+    let mut part = Portion::default();
     part.region.above[0] = 0.0;
     part
 }
 
-fn part(part: &Part) -> Form<'_> {
-    Form {
-        part,
+fn part(part: &Portion) -> SnapshotFormat<'_> {
+    SnapshotFormat {
+        portion: part,
         partition_rows: 7,
         schedule: Some("close"),
-        ..Form::of(&[])
+        ..SnapshotFormat::of(&[])
     }
 }
 
-fn short() -> Form<'static> {
-    Form {
+fn short() -> SnapshotFormat<'static> {
+    SnapshotFormat {
         precision: Precision::Single,
-        ..Form::of(&[])
+        ..SnapshotFormat::of(&[])
     }
 }
 
@@ -184,7 +184,7 @@ fn check_part(folder: &Path, total: u64) {
         }
     }
     let file = SnapshotFile::open(part.path()).unwrap();
-    assert_eq!(file.part().unwrap().as_deref(), Some("above x = 0 m"));
+    assert_eq!(file.portion().unwrap().as_deref(), Some("above x = 0 m"));
     assert_eq!(
         file.points(0..file.particles()).unwrap().len() as u64,
         count
@@ -247,22 +247,22 @@ fn snapshots_hold_every_field_in_id_order_on_any_ranks() {
                     &path,
                     &particles,
                     &meta(&case),
-                    &Form::of(&quantities),
+                    &SnapshotFormat::of(&quantities),
                     &mut rows,
                 )
                 .unwrap();
                 for partition_rows in PARTITIONS {
                     let path = folder.join(format!("{total}-{partition_rows}.vtkhdf"));
-                    let form = Form {
+                    let form = SnapshotFormat {
                         partition_rows,
-                        ..Form::of(&quantities)
+                        ..SnapshotFormat::of(&quantities)
                     };
                     snapshot::write(comm, &path, &particles, &meta(&case), &form, &mut rows)
                         .unwrap();
                 }
                 for (name, form) in [("part", part(&halves())), ("short", short())] {
                     let path = folder.join(format!("{total}-{name}.vtkhdf"));
-                    let form = Form {
+                    let form = SnapshotFormat {
                         quantities: &quantities,
                         ..form
                     };
@@ -300,9 +300,9 @@ fn few_writers_and_aligned_arrays_write_the_same_rows() {
             });
             for total in TOTALS {
                 let quantities = all_quantities();
-                let form = Form {
+                let form = SnapshotFormat {
                     partition_rows: 7,
-                    ..Form::of(&quantities)
+                    ..SnapshotFormat::of(&quantities)
                 };
                 let path = folder.join(format!("{total}.vtkhdf"));
                 let particles = particles(comm, total);
@@ -355,7 +355,7 @@ fn a_lone_rank_without_mpi_writes_the_same() {
             &path,
             &particles,
             &meta(&case),
-            &Form::of(&all_quantities()),
+            &SnapshotFormat::of(&all_quantities()),
             &mut rows,
         )
         .unwrap();
@@ -452,7 +452,7 @@ fn fill_disk(comm: &Comm, folder: &Path) {
         &path,
         &particles,
         &meta,
-        &Form::of(&all_quantities()),
+        &SnapshotFormat::of(&all_quantities()),
         &mut rows,
     );
     if snapshot.is_ok() && comm.is_root() {

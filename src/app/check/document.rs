@@ -1,4 +1,4 @@
-//! What is told of a case, for programs.
+//! The report on a case, for programs.
 
 use serde_json::{Value, json};
 
@@ -10,9 +10,10 @@ use files::preflight::{Approach, memory};
 use model::{Body, Case};
 use populate;
 
-/// All that is told, in SI units.
+/// The whole report, in SI units.
 pub(super) fn document(
-    (case, approaches): (&Case, &[Approach]),
+    case: &Case,
+    approaches: &[Approach],
     ranks: usize,
     warnings: &[String],
 ) -> Value {
@@ -31,7 +32,7 @@ pub(super) fn document(
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
     let wall = steps.zip(files);
-    let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, (steps, &files)));
+    let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, steps, &files));
     json!({
         "title": case.title,
         "dimension": case.dimension,
@@ -66,7 +67,7 @@ pub(super) fn document(
 fn of_body(case: &Case, body: &Body) -> (Value, u64) {
     let count = populate::count(body, case.dimension, &case.symmetry, None);
     let sizes = body.lattice.sizes.unwrap_or([1.0; 2]);
-    let told = json!({
+    let entry = json!({
         "body": body.name,
         "material": case.materials[body.material].name,
         "particles": count,
@@ -75,5 +76,5 @@ fn of_body(case: &Case, body: &Body) -> (Value, u64) {
         "mass": mass_of(case, body, count),
         "rigid": body.rigid.is_some(),
     });
-    (told, count)
+    (entry, count)
 }

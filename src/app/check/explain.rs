@@ -35,7 +35,7 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
                 add(&beside(&format!("{key} = {value}"), place));
                 typed.push((key, value));
             }
-            // It stands among the constants.
+            // It is among the constants.
             Explained::Absent { key, .. } if has(&of, key) => {}
             Explained::Absent {
                 key,
@@ -54,7 +54,7 @@ pub(super) fn explain(path: &Path, overrides: &[String]) -> Result<String, Input
 
 /// A line with what is said of it.
 fn beside(line: &str, said: &str) -> String {
-    // What is longer than a line may be goes on in the next ones, as it is typed.
+    // A comment that is too long for its line goes on in the next ones.
     format!("{line:<KEYS$}  # {said}")
 }
 
@@ -91,7 +91,8 @@ fn constants(of: &[Constant], typed: &[(&str, &str)], add: &mut impl FnMut(&str)
     }
 }
 
-/// Whether a constant is one of the library's material: a shear modulus may be that of another law.
+/// `true` if a constant is one of the library's material: a shear modulus may be that of another
+/// law.
 fn comes_from(base: &[Constant], key: &str) -> bool {
     let is_shear = |key: &str| key.starts_with("strength.") && key.ends_with(".shear_modulus");
     has(base, key) || is_shear(key) && base.iter().any(|constant| is_shear(&constant.key))

@@ -11,7 +11,7 @@ use files::output::h5::{Array, Content, Element};
 /// Rows compared at a time.
 const CHUNK: usize = 1 << 18;
 
-/// Compares two snapshots. Fields that only one has are told: what is written is free.
+/// Compares two snapshots. Fields that only one has are listed: the choice of output is free.
 pub fn snapshots(
     a: &Content,
     b: &Content,
@@ -22,9 +22,9 @@ pub fn snapshots(
         file.partitions(GRID)?;
     }
     let time = |file: &Content| file.all::<f64>("/VTKHDF/FieldData/TimeValue");
-    let (times, mut found) = ([time(a)?, time(b)?], Found::default());
+    let (times, mut differences) = ([time(a)?, time(b)?], Differences::default());
     if bytemuck::cast_slice::<f64, u64>(&times[0]) != bytemuck::cast_slice::<f64, u64>(&times[1]) {
-        found
+        differences
             .lines
             .push(format!("time: {:?} against {:?}", times[0], times[1]));
     }
@@ -32,12 +32,12 @@ pub fn snapshots(
         [a, b],
         POINT_DATA,
         &["/VTKHDF/Points"],
-        &mut found,
+        &mut differences,
         |_, letter, name| {
             report.note(format!("{what}: only {letter} has the field {name}"));
         },
     )?;
-    found.book(what, particles, report);
+    differences.record(what, particles, report);
     Ok(())
 }
 
@@ -48,52 +48,60 @@ pub fn checkpoints(
     what: &str,
     report: &mut Report,
 ) -> Result<(), ResultsError> {
-    let mut found = Found::default();
+    let mut differences = Differences::default();
     let steps = [a.number::<u64>("/", "step")?, b.number("/", "step")?];
     if steps[0] != steps[1] {
-        found
+        differences
             .lines
             .push(format!("step: {} against {}", steps[0], steps[1]));
     }
     let times = [a.number::<f64>("/", "time")?, b.number("/", "time")?];
     if times[0].to_bits() != times[1].to_bits() {
-        found
+        differences
             .lines
             .push(format!("time: {:?} against {:?}", times[0], times[1]));
     }
     for line in text::states(&a.text("/state")?, &b.text("/state")?) {
-        found.lines.push(format!("state {line}"));
+        differences.lines.push(format!("state {line}"));
     }
-    let particles = fields([a, b], FIELDS, &[], &mut found, |found, letter, name| {
-        found.lines.push(format!("{name}: only {letter} has it"));
-    })?;
-    found.book(what, particles, report);
+    let particles = fields(
+        [a, b],
+        FIELDS,
+        &[],
+        &mut differences,
+        |differences, letter, name| {
+            differences
+                .lines
+                .push(format!("{name}: only {letter} has it"));
+        },
+    )?;
+    differences.record(what, particles, report);
     Ok(())
 }
 
-/// Compares the arrays `others` and then those of a group that both have, and tells `lone` of those
-/// that one alone has; gives the number of particles that both have. Snapshots are what has
+/// Compares the arrays `others` and then those of a group that both have, and passes to `lone`
+/// those that one alone has; returns the number of particles that both have. Only snapshots have
 /// `others`.
 fn fields(
     [a, b]: [&Content; 2],
     group: &str,
     others: &[&str],
-    found: &mut Found,
-    mut lone: impl FnMut(&mut Found, &str, &str),
+    differences: &mut Differences,
+    mut lone: impl FnMut(&mut Differences, &str, &str),
 ) -> Result<usize, ResultsError> {
     let vtk = !others.is_empty();
-    let matching = Matching::new(a, b, &format!("{group}/id"), found)?;
+    let matching = Matching::new(a, b, &format!("{group}/id"), differences)?;
     for path in others {
-        matching.compare(a, b, path, vtk, found)?;
+        matching.compare(a, b, path, vtk, differences)?;
     }
     let (mine, theirs) = (a.arrays(group)?, b.arrays(group)?);
     for (one, other, letter) in [(&mine, &theirs, "A"), (&theirs, &mine, "B")] {
         for array in one.iter().filter(|array| !has(other, array)) {
-            lone(found, letter, &array.name);
+            lone(differences, letter, &array.name);
         }
     }
     for array in mine.iter().filter(|array| has(&theirs, array)) {
-        matching.compare(a, b, &format!("{group}/{}", array.name), vtk, found)?;
+        matching.compare(a, b, &format!("{group}/{}", array.name), vtk, differences)?;
     }
     Ok(matching.common())
 }
@@ -104,24 +112,24 @@ fn has(arrays: &[Array], array: &Array) -> bool {
 
 /// Differences of one pair of files.
 #[derive(Default)]
-struct Found {
+struct Differences {
     lines: Vec<String>,
     fields: usize,
     /// Particle id and text of the difference of the lowest id.
     first: Option<(u64, String)>,
 }
 
-impl Found {
-    fn book(mut self, what: &str, particles: usize, report: &mut Report) {
+impl Differences {
+    fn record(mut self, what: &str, particles: usize, report: &mut Report) {
         if let Some((_, text)) = &self.first {
             self.lines.insert(0, format!("first difference: {text}"));
         }
         let agreement = format!("{particles} particles agree in {} fields", self.fields);
-        report.book(what, &agreement, &self.lines);
+        report.record(what, &agreement, &self.lines);
     }
 }
 
-/// Rows in a row that stand in both files.
+/// Consecutive rows that are in both files.
 struct Stretch {
     a: u64,
     b: u64,
@@ -143,7 +151,7 @@ impl Stretch {
     }
 }
 
-/// Which rows belong together.
+/// The rows that belong together.
 struct Matching {
     ids: Vec<u64>,
     stretches: Vec<Stretch>,
@@ -151,7 +159,12 @@ struct Matching {
 
 impl Matching {
     /// Matches the ids of two files, each in ascending order.
-    fn new(a: &Content, b: &Content, path: &str, found: &mut Found) -> Result<Self, ResultsError> {
+    fn new(
+        a: &Content,
+        b: &Content,
+        path: &str,
+        differences: &mut Differences,
+    ) -> Result<Self, ResultsError> {
         let (mine, theirs) = (a.ids(path)?, b.ids(path)?);
         let mut stretches: Vec<Stretch> = Vec::new();
         let mut lone: [Vec<u64>; 2] = [Vec::new(), Vec::new()];
@@ -175,7 +188,7 @@ impl Matching {
             if let Some(first) = ids.first() {
                 let count = ids.len();
                 let text = format!("only {letter} has {count} particles; the first has id {first}");
-                found.lines.push(text);
+                differences.lines.push(text);
             }
         }
         Ok(Self {
@@ -195,12 +208,12 @@ impl Matching {
         b: &Content,
         path: &str,
         vtk: bool,
-        found: &mut Found,
+        differences: &mut Differences,
     ) -> Result<(), ResultsError> {
         let (array, other) = (a.array(path)?, b.array(path)?);
-        found.fields += 1;
+        differences.fields += 1;
         if array.row != other.row {
-            found
+            differences
                 .lines
                 .push(format!("{}: the types differ", array.name));
             return Ok(());
@@ -225,7 +238,7 @@ impl Matching {
                 }
             }
         }
-        tally.tell(found);
+        tally.add_to(differences);
         Ok(())
     }
 }
@@ -266,14 +279,14 @@ impl<'a> Tally<'a> {
                     continue;
                 }
                 let (one, other) = (self.number(mine), self.number(theirs));
-                let place = format!("id {id} {}", self.component(k));
+                let at = format!("id {id} {}", self.component(k));
                 let distance = distance(one.0, other.0);
                 if distance > self.largest {
                     self.largest = distance;
-                    self.at.clone_from(&place);
+                    self.at.clone_from(&at);
                 }
                 if self.first.is_none() {
-                    let text = format!("{place}: {} against {}", one.1, other.1);
+                    let text = format!("{at}: {} against {}", one.1, other.1);
                     self.first = Some((id, text));
                 }
             }
@@ -289,7 +302,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// A value as a number and as text that tells all bits.
+    /// A value as a number and as text that gives all bits.
     fn number(&self, bytes: &[u8]) -> (f64, String) {
         let mut wide = [0; 8];
         wide[..bytes.len()].copy_from_slice(bytes);
@@ -312,19 +325,23 @@ impl<'a> Tally<'a> {
         }
     }
 
-    fn tell(self, found: &mut Found) {
+    fn add_to(self, differences: &mut Differences) {
         let Some(first) = self.first else { return };
         let unit = if self.array.unit.is_empty() {
             String::new()
         } else {
             format!(" {}", self.array.unit)
         };
-        found.lines.push(format!(
+        differences.lines.push(format!(
             "{}: {} particles differ; first {}; largest difference {:e}{unit} at {}",
             self.array.name, self.particles, first.1, self.largest, self.at
         ));
-        if found.first.as_ref().is_none_or(|(id, _)| first.0 < *id) {
-            found.first = Some(first);
+        if differences
+            .first
+            .as_ref()
+            .is_none_or(|(id, _)| first.0 < *id)
+        {
+            differences.first = Some(first);
         }
     }
 }

@@ -38,12 +38,12 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
         (Ok(a), Ok(b)) => (a, b),
         // A run that never wrote a row has its header still.
         (Err(why), _) | (_, Err(why)) => {
-            report.book(name, "", &[format!("no table: {why}")]);
+            report.record(name, "", &[format!("no table: {why}")]);
             return;
         }
     };
     if a.columns != b.columns {
-        report.book(name, "", &["the columns differ".to_owned()]);
+        report.record(name, "", &["the columns differ".to_owned()]);
         return;
     }
     let common: Vec<&String> = a
@@ -74,7 +74,7 @@ pub fn compare(name: &str, a: &str, b: &str, report: &mut Report) {
     if common.is_empty() && lone[0] > 0 && lone[1] > 0 {
         differences.push("they have no row in common".to_owned());
     }
-    report.book(name, &format!("{} rows agree", common.len()), &differences);
+    report.record(name, &format!("{} rows agree", common.len()), &differences);
     for (letter, count) in ["A", "B"].into_iter().zip(lone) {
         if count > 0 {
             report.note(format!("{name}: only {letter} has {count} more rows"));
@@ -90,7 +90,7 @@ fn distance(a: Option<&String>, b: Option<&String>) -> f64 {
     }
 }
 
-/// Columns that tell rows of one time apart, beside those of bodies.
+/// Columns that distinguish rows of one time, beside those of bodies.
 const NAMES: [&str; 9] = [
     "load",
     "gauge",
@@ -146,10 +146,10 @@ mod tests {
     #[test]
     fn rows_of_the_same_step_are_compared() {
         let longer = format!("{A}11,3e-9,9.0\n");
-        let found = report(A, &longer);
-        assert!(found.agrees());
+        let compared = report(A, &longer);
+        assert!(compared.agrees());
         assert_eq!(
-            found.lines,
+            compared.lines,
             [
                 "history.csv: 3 rows agree",
                 "history.csv: only B has 1 more rows"
@@ -159,20 +159,20 @@ mod tests {
 
     #[test]
     fn the_first_and_the_largest_difference_are_told() {
-        let found = report(A, &A.replace("1.5", "1.75").replace("2.0", "2.125"));
-        assert_eq!(found.different, 1);
+        let compared = report(A, &A.replace("1.5", "1.75").replace("2.0", "2.125"));
+        assert_eq!(compared.different, 1);
         let expected = "  energy: 2 rows differ; first at step            9: 1.5 against 1.75; \
                         largest difference 2.5e-1";
-        assert_eq!(found.lines[1], expected);
+        assert_eq!(compared.lines[1], expected);
     }
 
     #[test]
     fn names_with_commas_stay_in_their_columns() {
         let a = "# units: s,-,N\ntime,body_a,force\n0.0,\"bumper, front\",-6902\n0.0,rear,48\n";
-        let found = report(a, &a.replace("48", "47"));
+        let compared = report(a, &a.replace("48", "47"));
         let expected = "  force: 1 rows differ; first at time 0.0 body_a rear: 48 against 47; \
                         largest difference 1e0";
-        assert_eq!(found.lines[1], expected);
+        assert_eq!(compared.lines[1], expected);
     }
 
     #[test]

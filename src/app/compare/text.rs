@@ -31,12 +31,12 @@ fn lines(a: &Result<Value, String>, b: &Result<Value, String>, same: bool) -> Ve
             let show = |value: &Option<Value>| {
                 (value.as_ref()).map_or_else(|| "nothing".to_owned(), Value::to_string)
             };
-            let line = |found: Difference| {
+            let line = |difference: Difference| {
                 format!(
                     "{}: {} against {}",
-                    found.path,
-                    show(&found.a),
-                    show(&found.b)
+                    difference.path,
+                    show(&difference.a),
+                    show(&difference.b)
                 )
             };
             differences(a, b).into_iter().map(line).collect()

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::materials::{Sources, table};
 use material::{Constant, Material, library};
 
-/// What the page says before its tables.
+/// The text before the tables.
 const HEAD: &str = "\
 # Materials
 
@@ -55,7 +55,8 @@ Sound is the longitudinal speed at rest, √(M/ρ₀) with the P-wave modulus M.
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
     let all = || library::names().into_iter();
-    for (name, material) in all().filter_map(|name| library::find(name).map(|found| (name, found)))
+    for (name, material) in
+        all().filter_map(|name| library::find(name).map(|material| (name, material)))
     {
         write_row(&mut page, name, &material);
     }
@@ -84,7 +85,7 @@ fn write_row(page: &mut String, name: &str, material: &Material) {
     );
 }
 
-/// Which laws of a kind the constants belong to: `eos.tait` of `eos.tait.b`.
+/// The laws of a kind that the constants belong to: `eos.tait` of `eos.tait.b`.
 fn laws(constants: &[Constant], kind: &str) -> Vec<String> {
     let mut laws: Vec<String> = Vec::new();
     for constant in constants {

@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use files::input::{referred, stated};
 
-/// What the page says before its tables.
+/// The text before the tables.
 const HEAD: &str = "\
 # Input reference
 
@@ -83,7 +83,7 @@ fn write_table(page: &mut String, table: &Value, tables: &Tables) {
     }
 }
 
-/// What a table is called, and what else its description says.
+/// The heading of a table, and the rest of its description.
 fn heading(table: &Value) -> (&str, &str) {
     let text = text(table, "description");
     let mut in_code = false;
@@ -94,7 +94,7 @@ fn heading(table: &Value) -> (&str, &str) {
     end.map_or((text, ""), |(at, _)| (&text[..at], text[at + 1..].trim()))
 }
 
-/// What may be typed, in Markdown.
+/// The accepted values, in Markdown.
 fn kind(value: &Value, tables: &Tables) -> String {
     if let Some(title) = value["title"].as_str() {
         return quoted(&title.replace(" with a unit, such as", ", as in"));
@@ -160,7 +160,7 @@ fn sentence(text: &str) -> String {
     first.chain(letters).collect()
 }
 
-/// What mdBook calls the place of a heading.
+/// The anchor that mdBook gives a heading.
 fn anchor(heading: &str) -> String {
     let kept = heading.chars().filter_map(|c| match c {
         ' ' => Some('-'),

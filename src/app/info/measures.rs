@@ -1,4 +1,4 @@
-//! What the last rows of a run's measures say.
+//! The last rows of a run's measures.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -6,14 +6,14 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::form;
+use crate::output_format;
 use files::output::{RunFolder, Sheet, gauge_records};
 use model::readable::{shown, shown_vector};
 
 /// Bytes of the end of a table that are read: the rows of the last time of some hundred bodies.
 const END: u64 = 1 << 16;
 
-/// Bytes of its beginning, where units and names of the columns stand.
+/// Bytes of its beginning, which has the units and names of the columns.
 const BEGIN: u64 = 1 << 14;
 
 /// Names and figures of what a run has measured: of bodies, measures, witness planes and gauges at the last
@@ -51,12 +51,13 @@ pub fn last_rows(folder: &RunFolder) -> Value {
         ("gauges", last_of_gauges(folder)),
         ("fragments", Last::of(&folder.fragments())),
     ];
-    let told =
-        |(name, last): (&str, Option<Last>)| Some((name.to_owned(), form::table(&last?.sheet)));
-    tables.into_iter().filter_map(told).collect()
+    let values = |(name, last): (&str, Option<Last>)| {
+        Some((name.to_owned(), output_format::table(&last?.sheet)))
+    };
+    tables.into_iter().filter_map(values).collect()
 }
 
-/// What gauges have read last, few or many.
+/// The last readings of gauges, few or many.
 fn last_of_gauges(folder: &RunFolder) -> Option<Last> {
     Last::of(&folder.gauges()).or_else(|| {
         let many = gauge_records::last_rows(folder).ok().flatten();
@@ -110,12 +111,12 @@ impl Last {
         self.sheet.rows.retain(|_| kept.next().unwrap_or(false));
     }
 
-    fn place(&self, name: &str) -> Option<usize> {
+    fn column(&self, name: &str) -> Option<usize> {
         self.sheet.names.iter().position(|other| other == name)
     }
 
     fn cell(&self, row: usize, name: &str) -> &str {
-        self.place(name)
+        self.column(name)
             .map_or("", |at| &self.sheet.rows[row].1[at])
     }
 
@@ -133,16 +134,16 @@ impl Last {
                 let longer = format!("{name} {}", self.cell(row, more));
                 longer.trim_end().clone_into(&mut name);
             }
-            let told: Vec<_> = (figures.iter())
+            let values: Vec<_> = (figures.iter())
                 .filter_map(|figure| self.figure(row, figure))
                 .collect();
-            let told = match self.figure(row, "coverage") {
-                _ if !told.is_empty() => told.join(", "),
+            let values = match self.figure(row, "coverage") {
+                _ if !values.is_empty() => values.join(", "),
                 Some(_) if self.number(row, "coverage") > 0.0 => self.readings(row),
                 Some(_) => "nothing to read: no matter is there".to_owned(),
                 None => String::new(),
             };
-            (name, told)
+            (name, values)
         };
         let mut lines: Vec<_> = rows.map(line).collect();
         if many {
@@ -165,9 +166,9 @@ impl Last {
                 Err(_) => cell("value").to_owned(),
             };
             match lines.last_mut().filter(|(name, _)| *name == of) {
-                Some((_, told)) => {
-                    told.push_str(", ");
-                    told.push_str(&value);
+                Some((_, values)) => {
+                    values.push_str(", ");
+                    values.push_str(&value);
                 }
                 None => lines.push((of, value)),
             }
@@ -179,16 +180,16 @@ impl Last {
     fn readings(&self, row: usize) -> String {
         let names = self.sheet.names.iter();
         let read = names.skip_while(|name| *name != "coverage").skip(1);
-        let told = read.filter_map(|name| self.figure(row, name)).take(3);
-        told.collect::<Vec<_>>().join(", ")
+        let values = read.filter_map(|name| self.figure(row, name)).take(3);
+        values.collect::<Vec<_>>().join(", ")
     }
 
     /// A figure or a vector with its unit, if the row has it.
     fn figure(&self, row: usize, name: &str) -> Option<String> {
         let words = name.replace('_', " ");
-        let unit = |name: &str| self.place(name).map_or("", |at| &self.sheet.units[at]);
+        let unit = |name: &str| self.column(name).map_or("", |at| &self.sheet.units[at]);
         let unit = |name: &str| unit(name).trim_matches('-').to_owned();
-        if self.place(name).is_some() {
+        if self.column(name).is_some() {
             let value = self.number(row, name);
             return (!value.is_nan()).then(|| format!("{words} {}", shown(value, &unit(name))));
         }
@@ -199,10 +200,10 @@ impl Last {
     }
 }
 
-/// Rows that are told of each table.
+/// Rows that are printed of each table.
 const MOST: usize = 20;
 
-/// Where the rows of a table begin: after the units and the names.
+/// Offset of the first row of a table: after the units and the names.
 fn end_of_header(text: &[u8]) -> Option<usize> {
     let ends = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n');
     ends.map(|(at, _)| at + 1).nth(1)
@@ -243,9 +244,9 @@ mod tests {
              0.5,inside,1.0,2e9,2785\n0.5,void,0.0,NaN,NaN\n0.5,density,0.5,,2785\n",
         )
         .unwrap();
-        let told: Vec<String> = last_figures(&run).into_iter().map(|line| line.1).collect();
+        let values: Vec<String> = last_figures(&run).into_iter().map(|line| line.1).collect();
         assert_eq!(
-            told[3..],
+            values[3..],
             [
                 "pressure 2 GPa",
                 "nothing to read: no matter is there",
@@ -256,8 +257,8 @@ mod tests {
 
     #[test]
     fn many_gauges_are_told_to_people_and_programs() {
-        let place = tempfile::tempdir().unwrap();
-        let run = RunFolder::at(place.path());
+        let dir = tempfile::tempdir().unwrap();
+        let run = RunFolder::at(dir.path());
         let columns = ["step", "time", "gauge", "pressure"].map(|name| Column::new(name, ""));
         let names = ["front", "rear"].map(str::to_owned);
         let mut records = GaugeRecords::new(&run, columns.to_vec(), names.to_vec());
@@ -270,8 +271,8 @@ mod tests {
         }
         records.write().unwrap();
         let lines = last_figures(&run);
-        let told: Vec<&str> = lines.iter().map(|line| line.1.as_str()).collect();
-        assert_eq!(told, ["pressure 20", "pressure 21"]);
+        let values: Vec<&str> = lines.iter().map(|line| line.1.as_str()).collect();
+        assert_eq!(values, ["pressure 20", "pressure 21"]);
         assert!(last_rows(&run)["gauges"].to_string().contains("rear"));
     }
 }

@@ -1,4 +1,4 @@
-//! What snapshots a run has.
+//! The snapshots of a run.
 
 use serde_json::json;
 
@@ -6,17 +6,21 @@ use super::text::Text;
 use files::output::{OutputError, RunFolder, series};
 use files::run::say::seconds;
 
-/// Tells of the usual snapshots and of those of each schedule.
-pub(super) fn tell(folder: &RunFolder, text: &mut Text) -> Result<(), OutputError> {
-    tell_of(folder, None, text)?;
+/// Reports the default snapshots and those of each schedule.
+pub(super) fn report(folder: &RunFolder, text: &mut Text) -> Result<(), OutputError> {
+    report_schedule(folder, None, text)?;
     for schedule in folder.schedules()? {
-        tell_of(folder, Some(&schedule), text)?;
+        report_schedule(folder, Some(&schedule), text)?;
     }
     Ok(())
 }
 
-/// How many snapshots the index of a schedule names, or that of the usual ones, and their times.
-fn tell_of(folder: &RunFolder, schedule: Option<&str>, text: &mut Text) -> Result<(), OutputError> {
+/// Reports the number and times of the snapshots of a schedule, or of the default ones.
+fn report_schedule(
+    folder: &RunFolder,
+    schedule: Option<&str>,
+    text: &mut Text,
+) -> Result<(), OutputError> {
     let snapshots = series::read(&folder.series_of(schedule))?;
     let span = match (snapshots.first(), snapshots.last()) {
         (Some(first), Some(last)) => {

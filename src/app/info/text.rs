@@ -1,4 +1,4 @@
-//! What is told, in lines and as values.
+//! A report, in lines and as values.
 
 use serde_json::{Map, Value};
 
@@ -24,7 +24,7 @@ impl Text {
         self.line(&format!("{name:<36} {value}"));
     }
 
-    /// A value, which lines tell in their way.
+    /// A value whose line is written separately.
     pub(super) fn value(&mut self, name: &str, value: impl Into<Value>) {
         self.values.insert(name.to_owned(), value.into());
     }

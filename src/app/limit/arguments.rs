@@ -1,4 +1,4 @@
-//! What `whipple limit` is given, quantities with units.
+//! The arguments of `whipple limit`, quantities with units.
 
 use super::laws::{self, Law};
 use super::{Beside, Output};
@@ -179,7 +179,7 @@ pub(super) struct Hole {
 }
 
 impl Projectile {
-    /// The shot, whose speed is yet to come.
+    /// The shot, still without its speed.
     fn shot(&self) -> Shot {
         Shot {
             speed: 0.0,
@@ -204,7 +204,8 @@ impl Whipple {
 }
 
 impl Equation {
-    /// The equation as a function of the speed, where its answer goes, and what stands beside it.
+    /// The equation as a function of the speed, the destination of its answer, and a sweep to
+    /// compare it with.
     pub(super) fn law(&self) -> Result<(Law, &Output, Option<&Beside>), String> {
         Ok(match self {
             Self::Nno(args) | Self::ModifiedNno(args) | Self::ThinBumper(args) => {

@@ -5,7 +5,7 @@ use desk::sweep::Shot;
 use model::readable::tidy;
 use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 
-/// Points of a curve: enough that its corners stand where they belong.
+/// Points of a curve, enough for sharp corners.
 const POINTS: u32 = 800;
 /// Colours of shots that failed and of those that did not.
 const SHOTS: [(bool, &str, Rgb); 2] = [

@@ -7,30 +7,30 @@ use model::readable::shown;
 /// A limit equation of a shield.
 pub(super) type Equation = fn(&Shield, &Shot) -> Limit;
 
-/// What an equation gives at a speed.
+/// The values of an equation at a speed.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Row {
     /// Lengths (m), one for each name.
     pub(super) values: Vec<f64>,
-    /// What else is to be said of this speed.
+    /// A remark on this speed.
     pub(super) remark: &'static str,
 }
 
 /// An equation with all but the speed.
 pub(super) struct Law {
-    /// What it is of.
+    /// The subject.
     pub(super) title: String,
     /// The shield or projectile that it is asked of.
     pub(super) subtitle: String,
-    /// Who published it.
+    /// Its publication.
     pub(super) source: &'static str,
-    /// What it was fitted to.
+    /// The data that it was fitted to.
     pub(super) holds: &'static str,
-    /// What its values are.
+    /// The name of its values.
     pub(super) what: &'static str,
-    /// What each is.
+    /// The name of each value.
     pub(super) names: Vec<&'static str>,
-    /// Which of them parts what fails from what holds, if any.
+    /// The value that separates failure from survival, if any.
     pub(super) limit: Option<usize>,
     /// Its values at a speed (m/s).
     pub(super) at: Box<dyn Fn(f64) -> Row>,
@@ -106,7 +106,7 @@ pub(super) fn sizing(task: sizing::Task, shot: Shot) -> Law {
     }
 }
 
-/// What a single wall may come to, from the least on.
+/// Failures of a single wall, the least first.
 const FAILURES: [Failure; 3] = [
     Failure::AttachedSpall,
     Failure::DetachedSpall,

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::laws::Law;
-use crate::form;
+use crate::output_format;
 use desk::sweep::Shot;
 use files::output::Sheet;
 
@@ -68,7 +68,7 @@ pub(super) fn sheet(law: &Law, speeds: &[f64]) -> Sheet {
     }
 }
 
-/// All that is told, in SI units.
+/// The whole report, in SI units.
 pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
     let shots = beside.iter().map(|shot| {
         let critical = law.limit.map(|at| (law.at)(shot.speed).values[at]);
@@ -80,7 +80,7 @@ pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
             "critical_diameter": critical,
         })
     });
-    let mut document = form::table(&sheet(law, speeds));
+    let mut document = output_format::table(&sheet(law, speeds));
     document["title"] = law.title.as_str().into();
     document["subtitle"] = law.subtitle.as_str().into();
     document["source"] = law.source.into();
@@ -89,7 +89,7 @@ pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
     document
 }
 
-/// Shots beside the limit, a line for each, and how many of them it tells.
+/// Shots beside the limit, a line for each, and how many of them it predicts.
 pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
     let [mm, km_s] = UNITS;
     let Some(limit) = law.limit else {
@@ -99,11 +99,11 @@ pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
         "{:>8}  {:>10}  {:>8}  {:<6}  {:<8}  folder\n",
         "km/s", "diameter", "d/d_c", "run", "equation"
     );
-    let mut told = 0;
+    let mut agreeing = 0;
     for shot in shots {
         let part = shot.diameter / (law.at)(shot.speed).values[limit];
         let fails = part > 1.0;
-        told += usize::from(fails == shot.failed);
+        agreeing += usize::from(fails == shot.failed);
         let word = |failed| if failed { "failed" } else { "held" };
         let _ = writeln!(
             text,
@@ -117,7 +117,7 @@ pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
     }
     let _ = writeln!(
         text,
-        "run and equation agree on {told} of {} shots",
+        "run and equation agree on {agreeing} of {} shots",
         shots.len()
     );
     text

@@ -5,12 +5,7 @@ use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 
 /// Efficiency over the number of ranks: of the model as it is, and of one that is refined as ranks
 /// become more, so that each core has as many particles.
-pub fn chart(
-    title: &str,
-    (particles, per_core): (usize, u32),
-    rows: &[Row],
-    weak: &[Weak],
-) -> Chart {
+pub fn chart(title: &str, particles: usize, per_core: u32, rows: &[Row], weak: &[Weak]) -> Chart {
     let mut curves = Vec::new();
     for levels in 1..=3 {
         let strong = rows.iter().filter(|row| row.levels == levels);

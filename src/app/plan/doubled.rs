@@ -1,4 +1,4 @@
-//! What each number of a machine matters.
+//! The influence of each number of a machine.
 
 use super::{PlanArgs, Planned, as_number};
 use files::plan::{CONSTANTS, Load, Machine, Weak, computing, refined, step_time};

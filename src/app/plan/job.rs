@@ -10,22 +10,22 @@ use files::output::RunFolder;
 use files::plan::{Machine, Row};
 use model::readable::one_line;
 
-/// How many times the foreseen time a job asks for.
+/// Requested time of a job over the predicted time.
 const MARGIN: f64 = 2.0;
-/// The least that a job asks for (minutes), and how much before its end the run stops: PBS sends no signal, and
-/// ranks begin some time after the job.
+/// The least time that a job requests (minutes), and how long before its end the run stops: PBS
+/// sends no signal, and ranks begin some time after the job.
 const LEAST: f64 = 10.0;
 const EARLIER: f64 = 5.0;
 
-/// What a job asks for.
+/// The resources that a job requests.
 pub struct Job<'a> {
     row: &'a Row,
     nodes: usize,
     /// Minutes, a whole number.
     minutes: f64,
-    /// Of a node (MB of 2²⁰ bytes), if the machine file tells it.
+    /// Of a node (MB of 2²⁰ bytes), if it is in the machine file.
     memory: Option<u64>,
-    /// How many such jobs are foreseen.
+    /// The predicted number of such jobs.
     jobs: Option<f64>,
 }
 
@@ -120,8 +120,8 @@ export WHIPPLE_JOB="
         text
     }
 
-    /// What it asks for, and how to submit it.
-    pub fn told(&self, file: &Path) -> String {
+    /// The requested resources, and how to submit the job.
+    pub fn summary(&self, file: &Path) -> String {
         let sharing = self.row.sharing;
         let plural = |count: usize| if count == 1 { "" } else { "s" };
         let jobs = match self.jobs {

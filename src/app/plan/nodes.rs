@@ -37,10 +37,10 @@ pub fn plan(
         let wanted = steps.map(|steps| steps * row.time.all + writing);
         let job = Job::new(row, machine, wanted);
         write_text(file, &job.text(file, [path, &run], &args.set))?;
-        say(&job.told(file));
+        say(&job.summary(file));
     }
-    args.form
-        .tell(|| table::document((source, machine), &rows, &files));
+    args.format
+        .print(|| table::document(source, machine, &rows, &files));
     Ok(())
 }
 
@@ -53,7 +53,7 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
     let mut all = Vec::new();
     for nodes in args.nodes.iter().map(|&nodes| nodes as usize) {
         let mut rows = Vec::new();
-        for sharing in sharings(args, machine, (nodes, source.particles.positions.len()))? {
+        for sharing in sharings(args, machine, nodes, source.particles.positions.len())? {
             let ranks = nodes * sharing.ranks_per_node;
             let layout = layout_of(source, (ranks, None), sharing.ranks_per_node)?;
             rows.push(row_of(source, machine, &layout, sharing, &alone));
@@ -71,11 +71,13 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
     Ok(all)
 }
 
-/// How ranks of so many nodes share them, all threads but one that divides their cores, or what was asked for.
+/// The ways in which ranks share that many nodes: all threads but one that divide their cores, or
+/// the requested one.
 fn sharings(
     args: &PlanArgs,
     machine: &Machine,
-    (nodes, particles): (usize, usize),
+    nodes: usize,
+    particles: usize,
 ) -> Result<Vec<Sharing>, String> {
     let cores = machine.ranks_per_node(1);
     let ranks = |sharing: &Sharing| nodes * sharing.ranks_per_node;

@@ -13,15 +13,15 @@ use model::Case;
 use particles::ParticleStore;
 use plot::snapshots;
 
-/// What is planned.
+/// The subject of the plan.
 pub struct Source {
     /// The case.
     pub case: Case,
     /// Its particles.
     pub particles: Particles,
-    /// When they stand so (s); absent for the start of a case.
+    /// Their time (s); absent for the start of a case.
     pub time: Option<f64>,
-    /// What is foreseen of them.
+    /// Their predicted future.
     pub outlook: Outlook,
 }
 
@@ -50,8 +50,8 @@ const CHUNK: usize = 1 << 20;
 pub fn read(path: &Path, set: &[String]) -> Result<Source, String> {
     let is_case = path.join("case.toml").is_file() || path.extension().is_some_and(|e| e == "toml");
     if RunFolder::is_run(path) {
-        let found = snapshots(path).map_err(|error| format!("error: {error}"))?;
-        let (_, last) = found.last().expect("there is one");
+        let available = snapshots(path).map_err(|error| format!("error: {error}"))?;
+        let (_, last) = available.last().expect("there is one");
         return of_snapshot(last, set);
     }
     if is_case {
@@ -99,35 +99,38 @@ fn of_checkpoint(folder: &Path, set: &[String]) -> Result<Source, String> {
 }
 
 fn of_snapshot(path: &Path, set: &[String]) -> Result<Source, String> {
-    let told = |error: &dyn std::fmt::Display| format!("error: {error}");
+    let with_prefix = |error: &dyn std::fmt::Display| format!("error: {error}");
     let text = Content::open(path).and_then(|file| file.text("/whipple/input"));
-    let case = saved_case(path, &text.map_err(|error| told(&error))?, set)?;
-    let file = SnapshotFile::open(path).map_err(|error| told(&error))?;
-    if let Some(part) = file.portion().map_err(|error| told(&error))? {
+    let case = saved_case(path, &text.map_err(|error| with_prefix(&error))?, set)?;
+    let file = SnapshotFile::open(path).map_err(|error| with_prefix(&error))?;
+    if let Some(part) = file.part().map_err(|error| with_prefix(&error))? {
         return Err(wrong(path, &only_part(&part)));
     }
-    let names = file.names().map_err(|error| told(&error))?;
+    let names = file.names().map_err(|error| with_prefix(&error))?;
     let mut particles = Particles::default();
     for first in (0..file.particles()).step_by(CHUNK) {
         let rows = first..file.particles().min(first + CHUNK);
         let column = |name: &str, otherwise: f64| {
             if names.iter().any(|held| held == name) {
                 file.scalar(name, 0, rows.clone())
-                    .map_err(|error| told(&error))
+                    .map_err(|error| with_prefix(&error))
             } else {
                 Ok(vec![otherwise; rows.len()])
             }
         };
-        let positions = file.points(rows.clone()).map_err(|error| told(&error))?;
+        let positions = file
+            .points(rows.clone())
+            .map_err(|error| with_prefix(&error))?;
         let [bodies, frozen] = [column("body", f64::NAN)?, column("frozen", 0.0)?];
-        // Masses are told where they tell sizes; lengths that are not are those of the start.
+        // Masses are stored only with sizes; smoothing lengths that are not stored are those of the
+        // start.
         let [masses, lengths] = [column("mass", 0.0)?, column("smoothing_length", 0.0)?];
         let rows = (0..positions.len()).filter(|&i| frozen[i] == 0.0);
         let rows = rows.map(|i| (positions[i], index(bodies[i]), masses[i], Ok(lengths[i])));
         let chunk = Particles::of(&case, rows).map_err(|what| wrong(path, &what))?;
         particles.append(chunk);
     }
-    let time = file.time().map_err(|error| told(&error))?;
+    let time = file.time().map_err(|error| with_prefix(&error))?;
     Ok(Source::new(case, particles, Some(time)))
 }
 

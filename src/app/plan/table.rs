@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::source::Source;
-use crate::form;
+use crate::output_format;
 use files::output::Sheet;
 use files::plan::{Files, Machine, Row, Sharing};
 use files::preflight::memory::in_words;
@@ -65,7 +65,7 @@ pub fn line(row: &Row, is_own: bool, steps: Option<f64>) -> String {
     text
 }
 
-/// What stands behind a line whose ranks take more memory than their node has.
+/// The remark on a line whose ranks take more memory than their node has.
 pub fn excess(row: &Row, machine: &Machine) -> String {
     let memory = row.memory_of_node();
     if memory <= machine.memory_per_node {
@@ -94,10 +94,10 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// All that is told, in SI units.
-pub fn document((source, machine): (&Source, &Machine), rows: &[Row], files: &Files) -> Value {
+/// The whole report, in SI units.
+pub fn document(source: &Source, machine: &Machine, rows: &[Row], files: &Files) -> Value {
     let steps = source.outlook.steps;
-    let mut document = form::table(&sheet(rows, steps));
+    let mut document = output_format::table(&sheet(rows, steps));
     document["title"] = source.case.title.as_str().into();
     document["dimension"] = source.case.dimension.into();
     document["particles"] = source.particles.positions.len().into();

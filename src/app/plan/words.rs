@@ -8,7 +8,7 @@ use model::readable::{short, shown};
 /// A share of the work that counts as all of it.
 const ALL: f64 = 0.995;
 
-/// What is planned.
+/// The subject of the plan.
 pub fn heading(source: &Source) -> String {
     let case = &source.case;
     let from = source
@@ -45,7 +45,7 @@ pub fn sharing(sharing: Sharing) -> String {
     )
 }
 
-/// What share of the work steps take, if it is not all.
+/// The share of the work that steps take, if it is not all.
 pub fn rest(share: f64) -> Option<String> {
     let percent = 100.0 * share;
     (share < ALL).then(|| {
@@ -55,7 +55,7 @@ pub fn rest(share: f64) -> Option<String> {
     })
 }
 
-/// How many times the work of equal particles steps take, if it is more.
+/// The work that steps take over that of equal particles, if it is more.
 pub fn unequal(times: f64) -> Option<String> {
     (times > 1.0).then(|| {
         format!("  sizes of particles differ: they take {times} times the work of equal ones")

@@ -10,9 +10,9 @@ use plot::{
 };
 
 use super::out::{named, save_text, target, write_chart};
-use super::{PlotArgs, name, places, wanted};
+use super::{PlotArgs, name, sources_of, wanted};
 
-/// Whether columns of a table are drawn.
+/// `true` if columns of a table are drawn.
 pub fn is_table(args: &PlotArgs) -> bool {
     args.xy.is_some()
         || args.pair.is_some()
@@ -21,10 +21,10 @@ pub fn is_table(args: &PlotArgs) -> bool {
         || args.source.extension().is_some_and(|e| e == "csv")
 }
 
-/// What `--xy` is, or what it would be of a table that knows what to draw, or with `--pair`.
+/// The value of `--xy`, or the default for a table that is known, or with `--pair`.
 ///
 /// # Errors
-/// [`PlotError::Options`] for a table of which nothing is known.
+/// [`PlotError::Options`] for an unknown table.
 pub fn columns(args: &PlotArgs) -> Result<String, PlotError> {
     let columns = match (&args.xy, &args.pair) {
         (Some(columns), _) => columns,
@@ -32,8 +32,8 @@ pub fn columns(args: &PlotArgs) -> Result<String, PlotError> {
         (None, None) if !args.gauges.is_empty() => PRESSURE,
         (None, None) if is(args, CROSSINGS) => return widest(&args.source),
         (None, None) => {
-            let usual = USUAL.iter().find(|(table, _)| is(args, table));
-            let (_, columns) = usual.ok_or(PlotError::Options(
+            let known = DEFAULT_COLUMNS.iter().find(|(table, _)| is(args, table));
+            let (_, columns) = known.ok_or(PlotError::Options(
                 "of a table say which columns to draw, as in --xy time:force_x",
             ))?;
             columns
@@ -42,13 +42,13 @@ pub fn columns(args: &PlotArgs) -> Result<String, PlotError> {
     Ok(columns.to_owned())
 }
 
-/// Whether a table of a run is drawn.
+/// `true` if this table of a run is drawn.
 fn is(args: &PlotArgs, table: &str) -> bool {
     args.source.file_name().is_some_and(|name| name == table)
 }
 
-/// What is drawn of tables of a run if nothing is asked for.
-const USUAL: [(&str, &str); 5] = [
+/// The default columns of tables of a run.
+const DEFAULT_COLUMNS: [(&str, &str); 5] = [
     (CONTACTS, "time:force"),
     ("bodies.csv", "time:kinetic_energy"),
     (GAUGES, PRESSURE),
@@ -56,27 +56,27 @@ const USUAL: [(&str, &str); 5] = [
     ("witness.csv", "time:mass"),
 ];
 
-/// What is drawn of gauges.
+/// The default columns of gauges.
 const PRESSURE: &str = "time:pressure";
 
-/// The table of a run that tells what its gauges have read, and the folder that does of many.
+/// The table of a run with the readings of its gauges, and the folder with those of many.
 const GAUGES: &str = "gauges.csv";
 const GAUGE_RECORDS: &str = "gauges";
 
-/// The table of a run that tells who has passed witness planes.
+/// The table of a run with the particles that have passed witness planes.
 const CROSSINGS: &str = "crossings.csv";
 
-/// The table of a run that tells its pairs of bodies apart.
+/// The table of a run with a row for each pair of bodies.
 const CONTACTS: &str = "contacts.csv";
 
-/// The table of a run that tells profiles, and mass by speed and by angle.
+/// The table of a run with profiles, and mass by speed and by angle.
 const DISTRIBUTIONS: &str = "distributions.csv";
 
 /// The table of a run that its energies are in.
 const HISTORY: &str = "history.csv";
 
 pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> {
-    let tables = places(args).map(|place| (name(place), table(place, history.table())));
+    let tables = sources_of(args).map(|source| (name(source), table(source, history.table())));
     let tables: Vec<_> = tables.collect();
     let chart = history.chart(&tables, &title_of(&args.source))?;
     let stem = match history {
@@ -89,22 +89,22 @@ pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> 
 /// Draws the fragments of each run by mass and by size.
 pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
     let mut tables = Vec::new();
-    for place in places(args) {
-        if !place.is_dir() {
-            tables.push((name(place), place.clone()));
+    for source in sources_of(args) {
+        if !source.is_dir() {
+            tables.push((name(source), source.clone()));
             continue;
         }
-        let folder = RunFolder::at(place);
+        let folder = RunFolder::at(source);
         let all = tables_of_run(&folder.fragments(), |step| folder.fragment_table(step))?;
         for path in choose(&all, &wanted(args)?)? {
-            let time = all.iter().find(|(_, found)| *found == path);
+            let time = all.iter().find(|(_, other)| *other == path);
             let time = time.map_or(String::new(), |(time, _)| seconds(*time));
-            let told = if args.with.is_empty() {
+            let label = if args.with.is_empty() {
                 time
             } else {
-                format!("{}, {time}", name(place))
+                format!("{}, {time}", name(source))
             };
-            tables.push((told, path));
+            tables.push((label, path));
         }
     }
     for by in By::ALL {
@@ -115,14 +115,14 @@ pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
     Ok(())
 }
 
-/// Whether the source is the table of distributions, and no columns of it are named.
+/// `true` if the source is the table of distributions, and none of its columns are named.
 pub fn is_distributions(args: &PlotArgs) -> bool {
     is(args, DISTRIBUTIONS) && args.xy.is_none()
 }
 
 /// Draws each distribution of the runs.
 pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
-    let tables = places(args).map(|place| (name(place), table(place, DISTRIBUTIONS)));
+    let tables = sources_of(args).map(|source| (name(source), table(source, DISTRIBUTIONS)));
     let tables: Vec<_> = tables.collect();
     let charts = distributions(&tables, &wanted(args)?, &title_of(&args.source), seconds)?;
     for (distribution, chart) in charts {
@@ -132,7 +132,7 @@ pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
     Ok(())
 }
 
-/// Where one of several pictures goes: one name is no name of several.
+/// The path of one of several pictures: one name cannot serve several.
 fn beside(args: &PlotArgs, picture: &str, suffix: &str) -> PathBuf {
     match &args.out {
         Some(out) if named(args).is_some() => {
@@ -149,12 +149,15 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
     let direction = Direction::parse(&args.along)?;
     let stem = format!("front-{body}-{}", direction.name().replace('_', "-"));
     let mut tables = Vec::new();
-    for place in places(args) {
-        let found: Vec<_> = snapshots(place)?.into_iter().map(|found| found.1).collect();
-        let path = place.join(format!("pictures/{stem}.csv"));
-        let text = front(&found, body, direction)?;
+    for source in sources_of(args) {
+        let snapshots_of: Vec<_> = snapshots(source)?
+            .into_iter()
+            .map(|snapshots_of| snapshots_of.1)
+            .collect();
+        let path = source.join(format!("pictures/{stem}.csv"));
+        let text = front(&snapshots_of, body, direction)?;
         save_text(&path, text.as_bytes())?;
-        tables.push((name(place), path));
+        tables.push((name(source), path));
     }
     let mut chart = tables_of(
         args,
@@ -178,14 +181,14 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
 }
 
 pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
-    let tables = places(args).map(|place| {
+    let tables = sources_of(args).map(|source| {
         let of_run = match (&args.pair, &args.gauges[..]) {
             (Some(_), _) => CONTACTS,
             (None, []) => HISTORY,
-            _ if place.join(GAUGE_RECORDS).is_dir() => GAUGE_RECORDS,
+            _ if source.join(GAUGE_RECORDS).is_dir() => GAUGE_RECORDS,
             _ => GAUGES,
         };
-        (name(place), table(place, of_run))
+        (name(source), table(source, of_run))
     });
     let mut picture = format!("xy-{}", columns.replace([':', ','], "-"));
     if let Some(pair) = &args.pair {
@@ -228,23 +231,23 @@ fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError
 }
 
 /// A table of a run, or a table itself.
-fn table(place: &Path, of_run: &str) -> PathBuf {
-    if place.is_dir() && !place.ends_with(GAUGE_RECORDS) {
-        place.join(of_run)
+fn table(source: &Path, of_run: &str) -> PathBuf {
+    if source.is_dir() && !source.ends_with(GAUGE_RECORDS) {
+        source.join(of_run)
     } else {
-        place.to_owned()
+        source.to_owned()
     }
 }
 
 /// The title of a run as its snapshots know it, also for a table in its folder; without any
 /// snapshot a place goes by its path.
-fn title_of(place: &Path) -> String {
-    let folder = if place.is_dir() {
-        Some(place)
+fn title_of(source: &Path) -> String {
+    let folder = if source.is_dir() {
+        Some(source)
     } else {
-        place.parent()
+        source.parent()
     };
     let known = folder.and_then(|folder| snapshots(folder).ok());
     let known = known.and_then(|found| title(&found[0].1).ok());
-    known.unwrap_or_else(|| place.display().to_string())
+    known.unwrap_or_else(|| source.display().to_string())
 }

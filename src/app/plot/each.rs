@@ -1,4 +1,4 @@
-//! Pictures of the chosen snapshots, of whatever kind: each by itself, side by side, or as a movie.
+//! Pictures of the chosen snapshots of any sort: each by itself, side by side, or as a movie.
 
 use std::ops::Range;
 

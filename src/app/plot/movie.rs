@@ -34,7 +34,7 @@ fn rate(text: &str) -> Result<f64, String> {
 }
 
 impl MovieArgs {
-    /// Whether a movie is asked for.
+    /// `true` if a movie is asked for.
     pub fn is_wanted(&self) -> bool {
         self.movie.is_some()
     }

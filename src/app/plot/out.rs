@@ -1,14 +1,14 @@
-//! Where pictures and tables go, and what they are: for all commands that draw.
+//! The paths and formats of pictures and tables, for all commands that draw.
 
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::PlotArgs;
-use crate::form::wrote;
+use crate::output_format::wrote;
 use plot::{self, Canvas, Chart, Format, PlotError, movie};
 
-/// What movies are called.
+/// The endings of movies.
 pub const MOVIES: &str =
     "a movie has a name that ends in .apng, .png or .gif, behind --movie or --out";
 
@@ -75,7 +75,7 @@ pub fn check(args: &PlotArgs) -> Result<(), PlotError> {
     }
 }
 
-/// What `--out` names, if that is a file.
+/// The format that `--out` names, if that is a file.
 pub fn named(args: &PlotArgs) -> Option<Format> {
     args.out.as_deref().and_then(Format::of)
 }
@@ -99,7 +99,7 @@ pub fn target(args: &PlotArgs, stem: &str) -> PathBuf {
     }
 }
 
-/// Whether a name is that of a file: of a movie where one is drawn, else of a picture or a table.
+/// `true` if a name is that of a file: of a movie if one is drawn, else of a picture or a table.
 fn is_file(args: &PlotArgs, out: &Path) -> bool {
     if args.movie.is_wanted() {
         movie::Format::of(out).is_some()
@@ -135,7 +135,7 @@ pub fn write_chart(chart: &Chart, width: Option<u32>, path: &Path) -> Result<(),
     write(&chart.draw(width)?, path)
 }
 
-/// Writes a text, whose folder is made if it lacks, and says so.
+/// Writes a text, whose folder is made if it does not exist, and says so.
 pub fn save_text(path: &Path, text: &[u8]) -> Result<(), PlotError> {
     save(path, |path| plot::save(path, text))
 }

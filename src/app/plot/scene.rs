@@ -97,7 +97,7 @@ fn complain_if(wrong: bool, complaint: &'static str) -> Result<(), PlotError> {
     }
 }
 
-/// Whether another kind of picture is asked for.
+/// `true` if another sort of picture is asked for.
 fn is_curve(args: &PlotArgs) -> bool {
     args.history.is_some()
         || args.fragments

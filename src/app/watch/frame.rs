@@ -20,7 +20,7 @@ const CURVE: usize = 48;
 
 /// The lines, none wider than `width` columns.
 pub fn frame(seen: &Seen, width: usize) -> Vec<String> {
-    let mut lines = vec![seen.standing.clone()];
+    let mut lines = vec![seen.state.clone()];
     let status = &seen.status;
     match &status.outlook {
         Some(outlook) => {
@@ -213,7 +213,7 @@ mod tests {
                 outlook: Some(outlook),
                 ..Status::new(Phase::Running, 100, 1e-7)
             },
-            standing: "runs/a: running".to_owned(),
+            state: "runs/a: running".to_owned(),
             age: Some(1.0),
             code: None,
         }

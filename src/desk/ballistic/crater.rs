@@ -5,7 +5,7 @@
 use super::handbook::{CM, G_CM3, KM_S, root};
 use super::shield::Shot;
 
-/// What it was fitted to.
+/// The data that it was fitted to.
 pub const HOLDS: &str = "aluminium walls, some 2 to 10 km/s";
 /// Density of projectile over wall from which it counts more.
 const HEAVY: f64 = 1.5;
@@ -21,7 +21,7 @@ pub struct Wall {
     pub sound_speed: f64,
 }
 
-/// What a wall must not do.
+/// A failure of a wall.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
     /// Spall that stays on.
@@ -89,11 +89,11 @@ mod tests {
     #[test]
     fn a_crater_is_as_worked_out_by_hand() {
         let expected = 5.24 / 3.122_0 * 1.018_35 * 1.235_02;
-        let found = depth(&WALL, 0.01, &shot(2800.0)) * 100.0;
-        assert!((found - expected).abs() < 2e-4, "{found} {expected}");
+        let computed = depth(&WALL, 0.01, &shot(2800.0)) * 100.0;
+        assert!((computed - expected).abs() < 2e-4, "{computed} {expected}");
         let steel = depth(&WALL, 0.01, &shot(7850.0)) * 100.0;
         let ratio = root(7850.0 / 2700.0, 2.0, 3.0) / 1.018_35;
-        assert!((steel / found - ratio).abs() < 1e-4);
+        assert!((steel / computed - ratio).abs() < 1e-4);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use super::shield::Shot;
 
-/// What they were fitted to.
+/// The data that they were fitted to.
 pub const HOLDS: &str = "aluminium on aluminium, t/d of 0.02 to 0.5, some 4 to 8 km/s; \
     the three lie some 10 % about their mean";
 
@@ -92,15 +92,15 @@ mod tests {
                 sound_speed: 5330.0,
                 projectile_sound_speed: 5330.0,
             };
-            let found = all(&pair, &shot).map(|hole| hole / 0.01);
-            for (found, expected) in found.iter().zip(expected) {
+            let computed = all(&pair, &shot).map(|hole| hole / 0.01);
+            for (computed, expected) in computed.iter().zip(expected) {
                 assert!(
-                    (found - expected).abs() < 0.006,
-                    "{share}: {found} {expected}"
+                    (computed - expected).abs() < 0.006,
+                    "{share}: {computed} {expected}"
                 );
             }
             let mean = expected.iter().sum::<f64>() / 3.0;
-            assert!((found[3] - mean).abs() < 0.01);
+            assert!((computed[3] - mean).abs() < 0.01);
         }
     }
 }

@@ -6,7 +6,7 @@ use super::handbook::{Flight, Sizes, root};
 use super::regime::{Limit, limit};
 use super::shield::{Shield, Shot};
 
-/// What it was fitted to.
+/// The data that it was fitted to.
 pub const HOLDS: &str = "aluminium on aluminium; failure is perforation or detached spall; angles \
     beyond 65° count as 65°";
 /// `t_b / (t_w^(2/3) S^(1/3))` from which a thicker bumper helps.
@@ -81,8 +81,8 @@ mod tests {
         assert!((ballistic(&sizes(1.2e-3), flight) - 0.499_5).abs() < 2e-4);
         // 1.35 (.864)^(2/3) √10 (4/7)^(1/3) / (2.8^(1/3) 2.7^(1/9) 7^(2/3)).
         let expected = 1.35 * 0.907_12 * 3.162_28 * 0.829_83 / (1.409_46 * 1.116_69 * 3.659_31);
-        let found = hypervelocity(&sizes(1.2e-3), flight.at(7.0));
-        assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+        let computed = hypervelocity(&sizes(1.2e-3), flight.at(7.0));
+        assert!((computed - expected).abs() < 1e-4, "{computed} {expected}");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use super::handbook::{Flight, Sizes, root};
 use super::regime::{Limit, limit};
 use super::shield::{Shield, Shot};
 
-/// What it was fitted to.
+/// The data that it was fitted to.
 pub const HOLDS: &str = "aluminium on aluminium, t_b/d at least some 0.2; failure is perforation or \
     detached spall; angles beyond 65° count as 65°";
 /// Normal speeds between which projectiles shatter (km/s).
@@ -80,9 +80,9 @@ mod tests {
                     angle: angle.to_radians(),
                     density: 2800.0,
                 };
-                let found = critical_diameter(&shield, &shot).diameter * 100.0;
-                let what = format!("{speed} km/s, {angle}°: {found}");
-                assert!((found - expected).abs() < 0.6e-4, "{what}");
+                let computed = critical_diameter(&shield, &shot).diameter * 100.0;
+                let what = format!("{speed} km/s, {angle}°: {computed}");
+                assert!((computed - expected).abs() < 0.6e-4, "{what}");
             }
         }
     }

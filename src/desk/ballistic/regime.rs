@@ -2,7 +2,7 @@
 
 use super::handbook::{CM, Flight};
 
-/// How a projectile comes out of the bumper.
+/// The state of a projectile behind the bumper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
     /// In one piece: the faster, the worse.
@@ -30,7 +30,7 @@ impl Regime {
 pub struct Limit {
     /// Diameter d_c (m).
     pub diameter: f64,
-    /// Where its speed belongs.
+    /// The regime of its speed.
     pub regime: Regime,
 }
 

@@ -1,4 +1,4 @@
-//! What the equations are asked of.
+//! The arguments of the equations.
 
 /// A bumper, a gap, stuffing in it or none, and a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,14 +7,14 @@ use std::f64::consts::PI;
 use super::handbook::{CM, Flight, G_CM3, KSI, root};
 use super::shield::Shot;
 
-/// What it was made for.
+/// The range that it was made for.
 pub const HOLDS: &str = "aluminium on aluminium, V cos θ of 7 km/s or more, S/d of 15 or more";
 /// Slowest normal speed that it holds for (m/s).
 pub const SLOWEST: f64 = 7e3;
 /// Gap over diameter from which bumpers may be thinner.
 const WIDE: f64 = 30.0;
 
-/// What is to be sized.
+/// A shield to be sized.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Task {
     /// Diameter of the sphere d (m).

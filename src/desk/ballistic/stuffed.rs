@@ -6,7 +6,7 @@ use super::handbook::{Flight, Sizes, root};
 use super::regime::{Limit, limit};
 use super::shield::{Shield, Shot};
 
-/// What it was fitted to.
+/// The data that it was fitted to.
 pub const HOLDS: &str = "aluminium bumper and wall, Nextel and Kevlar half way between them; angles \
     beyond 65° count as 65°";
 /// Part of the shield's areal mass below which stuffing is thin.
@@ -82,13 +82,13 @@ mod tests {
         assert!((ballistic(&sizes, flight) - expected).abs() < 1e-4);
         // .6 (1.368)^(1/3) 11.4^(2/3) 1.3^(1/6) / (19.6)^(1/3).
         let expected = 0.6 * 1.110_1 * 5.065_2 * 1.044_7 / 2.696_2;
-        let found = hypervelocity(&sizes, flight.at(7.0));
-        assert!((found - expected).abs() < 5e-4, "{found} {expected}");
+        let computed = hypervelocity(&sizes, flight.at(7.0));
+        assert!((computed - expected).abs() < 5e-4, "{computed} {expected}");
         let thin = Sizes {
             stuffing: 0.2,
             ..sizes
         };
-        let part = hypervelocity(&thin, flight.at(7.0)) / found;
+        let part = hypervelocity(&thin, flight.at(7.0)) / computed;
         assert!((part - 0.75).abs() < 1e-12);
     }
 }

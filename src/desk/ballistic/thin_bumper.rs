@@ -10,7 +10,7 @@ use super::regime::{Limit, limit};
 use super::shield::{Shield, Shot};
 use super::{nno, sizing};
 
-/// What it was fitted to.
+/// The data that it was fitted to.
 pub const HOLDS: &str = "aluminium on aluminium; failure is perforation or detached spall; angles \
     beyond 65° count as 65°";
 /// Normal speed from which the cloud is molten (km/s).
@@ -78,7 +78,7 @@ fn derating(sizes: &Sizes, flight: Flight, diameter: f64) -> f64 {
     1.0 + (r - 1.0) * (1.0 - x) * (1.0 - x)
 }
 
-/// Where a function that grows passes zero; an end if it does not.
+/// The zero of an increasing function; an end if there is none.
 fn bisect([mut low, mut high]: [f64; 2], f: impl Fn(f64) -> f64) -> f64 {
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -123,9 +123,9 @@ mod tests {
     fn a_thick_bumper_is_that_of_the_non_optimum_equation() {
         // t_b/d .35 at 7 km/s.
         let shield = shield(2e-3);
-        let [found, nno] = [critical_diameter, nno::critical_diameter]
+        let [computed, nno] = [critical_diameter, nno::critical_diameter]
             .map(|limit| limit(&shield, &shot(9e3)).diameter);
-        assert!((found / nno - 1.0).abs() < 1e-12);
+        assert!((computed / nno - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -1,8 +1,8 @@
-//! What is told of each particle, by the names that files and plots know.
+//! The columns of particles, by the names that files and plots know.
 
 use super::ExportError;
 use files::output::h5::{Array, Content, Element, RowType};
-use plot::{SYMMETRIC, Shown, Snapshot, TENSOR, VECTOR};
+use plot::{Drawn, SYMMETRIC, Snapshot, TENSOR, VECTOR};
 
 /// Group of a snapshot's particle fields.
 const FIELDS: &str = "/VTKHDF/PointData";
@@ -26,19 +26,19 @@ pub struct Column {
     pub unit: String,
     /// One sentence.
     pub description: String,
-    /// Where it comes from.
+    /// Its source.
     pub source: Source,
 }
 
-/// Where a column comes from.
+/// The source of a column.
 #[derive(Debug, Clone)]
 pub enum Source {
     /// A dataset of the snapshot.
     Stored { path: String, row: RowType },
     /// Particles' places.
-    Place(RowType),
+    Position(RowType),
     /// Made from datasets, component by component, as plots do.
-    Made(Vec<Shown>),
+    Made(Vec<Drawn>),
     /// Half of the size of the cell that each particle fills.
     Radius,
     /// Its way from where it was at the start.
@@ -52,14 +52,14 @@ impl Column {
     pub fn names(&self) -> Vec<String> {
         let name = |component: &&str| match (&self.source, *component) {
             (_, "") => self.name.clone(),
-            (Source::Place(_), component) => component.to_owned(),
+            (Source::Position(_), component) => component.to_owned(),
             (_, component) => format!("{}_{component}", self.name),
         };
         self.components.iter().map(name).collect()
     }
 
-    /// Where particles are.
-    pub fn places(content: &Content) -> Result<Self, ExportError> {
+    /// The positions of particles.
+    pub fn positions(content: &Content) -> Result<Self, ExportError> {
         let array = content.array(POINTS)?;
         Ok(Self {
             name: "position".to_owned(),
@@ -67,22 +67,23 @@ impl Column {
             element: array.row.element,
             unit: "m".to_owned(),
             description: "Position.".to_owned(),
-            source: Source::Place(array.row),
+            source: Source::Position(array.row),
         })
     }
 
-    /// How large particles are.
+    /// The radii of particles.
     pub fn radius() -> Self {
-        let told = "Half the edge of the cell that the particle fills now.";
-        Self::made("radius", &[""], "m", told, Source::Radius)
+        let description = "Half the edge of the cell that the particle fills now.";
+        Self::made("radius", &[""], "m", description, Source::Radius)
     }
 
-    /// Which image a row is of.
+    /// The image that a row belongs to.
     pub fn image() -> Self {
-        let told = "Planes that it is an image behind: the sum of 1 (normal to x), 2 (y), 4 (z).";
+        let description =
+            "Planes that it is an image behind: the sum of 1 (normal to x), 2 (y), 4 (z).";
         Self {
             element: Element::U8,
-            ..Self::made("image", &[""], "", told, Source::Image)
+            ..Self::made("image", &[""], "", description, Source::Image)
         }
     }
 
@@ -131,7 +132,7 @@ pub fn columns(
     let mut columns: Vec<Column> = Vec::new();
     for name in always.chain(all.iter().cloned()) {
         let column = if stored.contains(&name) {
-            // Whether its rows are those of the points.
+            // `true` if its rows are those of the points.
             snapshot.file.components(&name)?;
             Column::stored(&content.array(&format!("{FIELDS}/{name}"))?)
         } else {
@@ -149,9 +150,9 @@ fn derived(snapshot: &Snapshot, name: &str) -> Result<Column, ExportError> {
     match name {
         "radius" => return Ok(Column::radius()),
         "displacement" => {
-            let told = "Position less that of the same particle at the start of the run.";
+            let description = "Position less that of the same particle at the start of the run.";
             let source = Source::Displacement;
-            return Ok(Column::made(name, &VECTOR, "m", told, source));
+            return Ok(Column::made(name, &VECTOR, "m", description, source));
         }
         _ => {}
     }
@@ -163,16 +164,22 @@ fn derived(snapshot: &Snapshot, name: &str) -> Result<Column, ExportError> {
         } else {
             name.to_owned()
         };
-        Shown::find(snapshot, &name)
+        Drawn::find(snapshot, &name)
     };
-    let shown = parts.iter().map(find).collect::<Result<Vec<_>, _>>()?;
-    let (unit, label) = match shown.first() {
-        Some(Shown::Field(field)) => (field.unit.clone(), field.label.clone()),
+    let drawn = parts.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+    let (unit, label) = match drawn.first() {
+        Some(Drawn::Field(field)) => (field.unit.clone(), field.label.clone()),
         _ => (String::new(), String::new()),
     };
     let label = if whole { name.replace('_', " ") } else { label };
-    let told = format!("Made from the snapshot's fields: {label}.");
-    Ok(Column::made(name, parts, &unit, &told, Source::Made(shown)))
+    let description = format!("Made from the snapshot's fields: {label}.");
+    Ok(Column::made(
+        name,
+        parts,
+        &unit,
+        &description,
+        Source::Made(drawn),
+    ))
 }
 
 fn components(count: usize) -> &'static [&'static str] {

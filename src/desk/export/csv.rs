@@ -11,7 +11,7 @@ const STYLE: Style = Style {
     nan: "NaN",
 };
 
-/// Writes a snapshot; particles tell the names of their bodies.
+/// Writes a snapshot; particles have the names of their bodies.
 pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     let quoted = |name: &String| {
         let text = String::from_utf8_lossy(&table_line([name])).into_owned();

@@ -1,4 +1,4 @@
-//! What can go wrong on the way to a file for others.
+//! Errors of exports.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub enum ExportError {
     Snapshot {
         /// The snapshot.
         path: PathBuf,
-        /// Why, and what to do.
+        /// The reason, and a remedy.
         reason: String,
     },
     /// Options that do not go together.

@@ -36,9 +36,9 @@ pub enum Format {
     Paraview,
 }
 
-/// Where files go.
+/// The destination of files.
 #[derive(Debug, Clone)]
-pub struct Place {
+pub struct Destination {
     /// The folder.
     pub folder: PathBuf,
     /// The only file, if it has a name of its own.
@@ -46,7 +46,7 @@ pub struct Place {
 }
 
 impl Format {
-    /// What its files end with.
+    /// The ending of its files.
     #[must_use]
     pub fn ending(self) -> &'static str {
         match self {
@@ -61,36 +61,36 @@ impl Format {
         }
     }
 
-    /// Whether one file holds all snapshots.
+    /// `true` if one file holds all snapshots.
     #[must_use]
     pub fn is_series(self) -> bool {
         matches!(self, Self::Lammps | Self::Xyz)
     }
 
-    /// Whether it tells of bodies by number alone.
+    /// `true` if bodies have numbers without names.
     #[must_use]
     pub fn numbers_bodies(self) -> bool {
         matches!(self, Self::Lammps)
     }
 }
 
-/// Writes snapshots, at least one, and tells the path of each file that is there.
+/// Writes snapshots, at least one, and passes the path of each file that is there to `on_file`.
 ///
 /// # Errors
-/// [`ExportError`] if a snapshot cannot be read, has not what is wished for, or a file cannot be
+/// [`ExportError`] if a snapshot cannot be read or lacks a column of `wish`, or if a file cannot be
 /// written.
 pub fn export(
     snapshots: &[PathBuf],
     format: Format,
     wish: &Wish,
-    place: &Place,
-    tell: &mut dyn FnMut(&Path),
+    destination: &Destination,
+    on_file: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
     if format.is_series() {
-        return write_series(snapshots, format, wish, place, tell);
+        return write_series(snapshots, format, wish, destination, on_file);
     }
     let ending = format.ending();
-    if place.file.is_some() && snapshots.len() > 1 {
+    if destination.file.is_some() && snapshots.len() > 1 {
         return Err(several(&format!("{} snapshots", snapshots.len())));
     }
     let mut written = Vec::new();
@@ -98,16 +98,16 @@ pub fn export(
         let frame = Frame::open(snapshot, wish)?;
         let name = stem(snapshot);
         if format == Format::Stl {
-            write_surfaces(&frame, wish, &name, place, tell)?;
+            write_surfaces(&frame, wish, &name, destination, on_file)?;
             continue;
         }
-        let path = target(place, &format!("{name}.{ending}"));
-        file(&path, tell, |out| write(&frame, format, out))?;
+        let path = target(destination, &format!("{name}.{ending}"));
+        file(&path, on_file, |out| write(&frame, format, out))?;
         written.push((frame.snapshot.time, format!("{name}.{ending}")));
     }
     if format == Format::Vtu && snapshots.len() > 1 {
-        let path = place.folder.join(format!("{SERIES}.pvd"));
-        file(&path, tell, |out| {
+        let path = destination.folder.join(format!("{SERIES}.pvd"));
+        file(&path, on_file, |out| {
             Ok(out.put(vtu::index(&written).as_bytes())?)
         })?;
     }
@@ -121,23 +121,23 @@ pub fn export(
 pub fn script(
     run: Option<&Path>,
     snapshot: &Path,
-    place: &Place,
-    tell: &mut dyn FnMut(&Path),
+    destination: &Destination,
+    on_file: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
-    let path = target(place, paraview::NAME);
-    file(&path, tell, |out| paraview::write(run, snapshot, out))
+    let path = target(destination, paraview::NAME);
+    file(&path, on_file, |out| paraview::write(run, snapshot, out))
 }
 
-/// Writes a file and tells its path.
+/// Writes a file and passes its path to `on_file`.
 fn file(
     path: &Path,
-    tell: &mut dyn FnMut(&Path),
+    on_file: &mut dyn FnMut(&Path),
     write: impl FnOnce(&mut NewFile) -> Result<(), ExportError>,
 ) -> Result<(), ExportError> {
     let mut out = NewFile::create(path)?;
     write(&mut out)?;
     out.finish()?;
-    tell(path);
+    on_file(path);
     Ok(())
 }
 
@@ -156,7 +156,7 @@ fn write(frame: &Frame, format: Format, out: &mut NewFile) -> Result<(), ExportE
     }
 }
 
-/// What a file of several snapshots is called.
+/// The name of a file of several snapshots.
 const SERIES: &str = "snapshots";
 
 /// All snapshots in one file.
@@ -164,16 +164,16 @@ fn write_series(
     snapshots: &[PathBuf],
     format: Format,
     wish: &Wish,
-    place: &Place,
-    tell: &mut dyn FnMut(&Path),
+    destination: &Destination,
+    on_file: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
     let ending = format.ending();
     let name = match snapshots {
         [only] => stem(only),
         _ => SERIES.to_owned(),
     };
-    let path = target(place, &format!("{name}.{ending}"));
-    file(&path, tell, |out| {
+    let path = target(destination, &format!("{name}.{ending}"));
+    file(&path, on_file, |out| {
         let mut apart = None;
         for snapshot in snapshots {
             let mut frame = Frame::open(snapshot, wish)?;
@@ -192,8 +192,8 @@ fn write_surfaces(
     frame: &Frame,
     wish: &Wish,
     name: &str,
-    place: &Place,
-    tell: &mut dyn FnMut(&Path),
+    destination: &Destination,
+    on_file: &mut dyn FnMut(&Path),
 ) -> Result<(), ExportError> {
     let surfaces = surfaces(frame, wish)?;
     let bodies = &frame.snapshot.bodies;
@@ -204,12 +204,12 @@ fn write_surfaces(
     if there.is_empty() {
         return Err(frame.wrong("no particles of the bodies are there"));
     }
-    if place.file.is_some() && there.len() > 1 {
+    if destination.file.is_some() && there.len() > 1 {
         return Err(several(&format!("the surfaces of {} bodies", there.len())));
     }
     for ((body, own), surface) in there {
-        let path = target(place, &format!("{name}-{own}.stl"));
-        file(&path, tell, |out| {
+        let path = target(destination, &format!("{name}-{own}.stl"));
+        file(&path, on_file, |out| {
             stl::write(body, frame.snapshot.time, &surface, out)
         })?;
     }
@@ -222,11 +222,11 @@ fn several(what: &str) -> ExportError {
     ))
 }
 
-fn target(place: &Place, name: &str) -> PathBuf {
-    place
+fn target(destination: &Destination, name: &str) -> PathBuf {
+    destination
         .file
         .clone()
-        .unwrap_or_else(|| place.folder.join(name))
+        .unwrap_or_else(|| destination.folder.join(name))
 }
 
 fn stem(path: &Path) -> String {

@@ -12,19 +12,19 @@ use files::output::Block;
 use files::output::h5::Content;
 use files::output::h5::RowType;
 use model::Axis;
-use plot::{PlotError, Shown, Snapshot};
+use plot::{Drawn, PlotError, Snapshot};
 
-/// Rows that stand in memory at a time.
+/// Rows in memory at a time.
 const PIECE: usize = 1 << 17;
 
-/// What of snapshots is exported.
+/// The columns and particles to be exported.
 #[derive(Debug, Clone, Default)]
 pub struct Wish {
     /// Names of fields; all that the snapshot holds if there are none.
     pub fields: Vec<String>,
     /// Names of bodies; all if there are none.
     pub bodies: Vec<String>,
-    /// Whether images behind symmetry planes are added.
+    /// `true` if images behind symmetry planes are added.
     pub mirror: bool,
     /// Edge of the cells that surfaces are found in (m); half the finest spacing if it is not said.
     pub cell: Option<f64>,
@@ -38,18 +38,18 @@ pub struct Piece {
     pub image: u8,
 }
 
-/// A snapshot and what is told of each of its particles.
+/// A snapshot and its columns.
 #[derive(Debug)]
 pub struct Frame {
     pub path: PathBuf,
     pub snapshot: Snapshot,
-    /// Number of the step, if the snapshot tells it.
+    /// Number of the step, if it is stored.
     pub step: Option<u64>,
     pub position: Column,
     /// All columns beside the position; first `id`, `body` and, with images, `image`.
     pub columns: Vec<Column>,
     pub images: Images,
-    /// How far apart the ids of a particle and of its images are, for those that want each once.
+    /// Difference between the ids of a particle and of its images, for formats with unique ids.
     pub apart: i64,
     content: Content,
     start: Option<Start>,
@@ -66,15 +66,15 @@ impl Frame {
         let mut columns = columns(&snapshot, &content, &wish.fields)?;
         if images.any() {
             let first = |column: &Column| ["id", "body"].contains(&column.name.as_str());
-            let place = columns.iter().take_while(|column| first(column)).count();
-            columns.insert(place, Column::image());
+            let slot = columns.iter().take_while(|column| first(column)).count();
+            columns.insert(slot, Column::image());
         }
         let moves = |column: &Column| matches!(column.source, Source::Displacement);
         let start = columns.iter().any(moves).then(|| Start::beside(path));
         Ok(Self {
             start: start.transpose()?,
             step: snapshot.file.number("/whipple", "step").ok(),
-            position: Column::places(&content)?,
+            position: Column::positions(&content)?,
             ranges: ranges(&snapshot, &wish.bodies)?,
             path: path.to_owned(),
             snapshot,
@@ -111,7 +111,7 @@ impl Frame {
         let count = rows.len();
         let width = column.components.len();
         let mut values = match &column.source {
-            Source::Place(row) => self.stored("/VTKHDF/Points", *row, rows)?,
+            Source::Position(row) => self.stored("/VTKHDF/Points", *row, rows)?,
             Source::Stored { path, row } => self.stored(path, *row, rows)?,
             Source::Image => return Ok(Values::U8(vec![image; count])),
             Source::Radius => {
@@ -127,7 +127,7 @@ impl Frame {
         match &column.source {
             _ if image == 0 => {}
             _ if column.name == "id" => values.shift(i64::from(image) * self.apart),
-            Source::Place(_) => {
+            Source::Position(_) => {
                 values.change(3, |axis, value| self.images.coordinate(image, axis, value));
             }
             source => {
@@ -155,12 +155,12 @@ impl Frame {
     }
 
     /// Fields of plots, component by component.
-    fn made(&self, parts: &[Shown], rows: &Range<usize>) -> Result<Vec<f64>, ExportError> {
+    fn made(&self, parts: &[Drawn], rows: &Range<usize>) -> Result<Vec<f64>, ExportError> {
         let mut values = vec![0.0; rows.len() * parts.len()];
         for (k, part) in parts.iter().enumerate() {
             let all = part.values(&self.snapshot, rows.clone())?;
-            let places = values.iter_mut().skip(k).step_by(parts.len());
-            places.zip(all).for_each(|(place, value)| *place = value);
+            let slots = values.iter_mut().skip(k).step_by(parts.len());
+            slots.zip(all).for_each(|(slot, value)| *slot = value);
         }
         Ok(values)
     }
@@ -175,13 +175,13 @@ impl Frame {
         if ids.len() != points.len() {
             return Err(self.wrong("its ids are none"));
         }
-        let ways = points.iter().zip(start.places(&ids)?);
+        let ways = points.iter().zip(start.positions(&ids)?);
         let ways = ways.flat_map(|(now, then)| [0, 1, 2].map(|k| now[k] - then[k]));
         Ok(ways.collect())
     }
 
-    /// What ids of images are to differ by so that each is there once, as the last row, which has the largest
-    /// id, tells; nothing where there are none, or no room for it.
+    /// The difference between the ids of images that makes all of them unique, from the last row,
+    /// which has the largest id; nothing if there are no images, or no room for it.
     pub fn distance_of_ids(&self) -> Result<i64, ExportError> {
         let last = self.snapshot.file.particles();
         let (Some(id), true, 1..) = (self.column("id"), self.images.any(), last) else {
@@ -232,9 +232,9 @@ impl Frame {
 /// Each particle's id.
 const ID: &str = "/VTKHDF/PointData/id";
 
-/// Whether a field of plots changes its sign in an image.
-fn turns(part: &Shown, image: u8) -> bool {
-    let Shown::Field(field) = part else {
+/// `true` if a field of plots changes its sign in an image.
+fn turns(part: &Drawn, image: u8) -> bool {
+    let Drawn::Field(field) = part else {
         return false;
     };
     let behind = Axis::ALL
@@ -257,12 +257,12 @@ fn ranges(snapshot: &Snapshot, names: &[String]) -> Result<Vec<Range<usize>>, Ex
     }
     let mut wanted = vec![false; snapshot.bodies.len()];
     for name in names {
-        let place = snapshot.bodies.iter().position(|body| body == name);
-        let place = place.ok_or_else(|| PlotError::Body {
+        let index = snapshot.bodies.iter().position(|body| body == name);
+        let index = index.ok_or_else(|| PlotError::Body {
             name: name.clone(),
             known: snapshot.bodies.clone(),
         })?;
-        wanted[place] = true;
+        wanted[index] = true;
     }
     for chunk in snapshot.chunks() {
         let bodies = snapshot.body_of(chunk.clone())?;

@@ -1,4 +1,4 @@
-//! What stands behind symmetry planes.
+//! Images behind symmetry planes.
 
 use model::SymmetryPlane;
 
@@ -29,7 +29,7 @@ impl Images {
         &self.numbers
     }
 
-    /// Whether there are any beside what was computed.
+    /// `true` if there are any beside the computed particles.
     pub fn any(&self) -> bool {
         self.numbers.len() > 1
     }
@@ -43,7 +43,7 @@ impl Images {
     }
 }
 
-/// Whether a component changes its sign in an image: once for each of its indices (`"x"`, `"xy"`)
+/// `true` if a component changes its sign in an image: once for each of its indices (`"x"`, `"xy"`)
 /// that is normal to a plane.
 pub fn flips(image: u8, component: &str) -> bool {
     let normal = |letter: char| match "xyz".find(letter) {

@@ -32,8 +32,8 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     columns.extend(named("velocity"));
     columns.push(Printed::numbers(&radius));
     let rest = frame.columns.iter();
-    let told = ["id", "body", "velocity", "radius"];
-    let rest = rest.filter(|column| !told.contains(&column.name.as_str()));
+    let standard = ["id", "body", "velocity", "radius"];
+    let rest = rest.filter(|column| !standard.contains(&column.name.as_str()));
     columns.extend(rest.map(Printed::numbers));
     out.put(head(frame, &columns)?.as_bytes())?;
     write_lines(frame, &columns, STYLE, out)
@@ -61,7 +61,7 @@ fn head(frame: &Frame, columns: &[Printed]) -> Result<String, ExportError> {
     Ok(head)
 }
 
-/// What LAMMPS calls the columns that it knows.
+/// The names that LAMMPS has for the columns that it knows.
 fn names(column: &Column) -> Vec<String> {
     let known: &[&str] = match column.name.as_str() {
         "body" => &["type"],

@@ -1,9 +1,9 @@
-//! Room export: snapshots in the formats of other programs.
+//! Exports: snapshots in the formats of other programs.
 //!
-//! A [`Frame`] is a snapshot with the columns that are asked for, images behind symmetry planes
-//! included where these are wanted; each format is a file that writes frames, piece by piece, so
-//! that no snapshot stands whole in memory but for its surfaces. Numbers are those of the snapshot: their
-//! bits in binary files, the fewest digits that give them back in texts. SI units.
+//! A [`Frame`] is a snapshot with the columns that are asked for, and with images behind symmetry
+//! planes if wanted. Each format is a file that writes frames piece by piece: only surfaces need a
+//! whole snapshot in memory. Numbers are those of the snapshot: their bits in binary files, the
+//! fewest digits that give them back in texts. SI units.
 
 mod column;
 mod csv;
@@ -24,4 +24,4 @@ mod vtu;
 mod xyz;
 
 pub use error::ExportError;
-pub use format::{Format, Place, Wish, export, script};
+pub use format::{Destination, Format, Wish, export, script};

@@ -24,7 +24,7 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
         } else {
             format!("({rows}, {width})")
         };
-        let head = head(kind(column), &shape);
+        let head = head(dtype(column), &shape);
         let size = head.len() as u64 + rows * (width * column.element.bytes()) as u64;
         archive.begin(&format!("{}.npy", column.name), size)?;
         archive.put(&head)?;
@@ -33,8 +33,8 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
         }
         archive.end()?;
     }
-    let entry = |archive: &mut Archive, name: &str, kind: &str, shape: &str, bytes: &[u8]| {
-        let head = head(kind, shape);
+    let entry = |archive: &mut Archive, name: &str, dtype: &str, shape: &str, bytes: &[u8]| {
+        let head = head(dtype, shape);
         archive.begin(&format!("{name}.npy"), (head.len() + bytes.len()) as u64)?;
         archive.put(&head)?;
         archive.put(bytes)?;
@@ -42,25 +42,25 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     };
     let time = frame.snapshot.time.to_ne_bytes();
     entry(&mut archive, "time", "f8", "()", &time)?;
-    let (kind, bytes) = words(&frame.snapshot.bodies);
+    let (dtype, bytes) = words(&frame.snapshot.bodies);
     let shape = format!("({},)", frame.snapshot.bodies.len());
-    entry(&mut archive, "body_names", &kind, &shape, &bytes)?;
-    let (kind, bytes) = words(&[about(frame)]);
-    entry(&mut archive, "about", &kind, "()", &bytes)?;
+    entry(&mut archive, "body_names", &dtype, &shape, &bytes)?;
+    let (dtype, bytes) = words(&[about(frame)]);
+    entry(&mut archive, "about", &dtype, "()", &bytes)?;
     archive.finish()?;
     Ok(())
 }
 
-/// What is told of the whole and of each array, as JSON.
+/// Description of the whole and of each array, as JSON.
 fn about(frame: &Frame) -> String {
     let columns = [&frame.position].into_iter().chain(&frame.columns);
     let arrays = columns.map(|column| {
-        let told = json!({
+        let entry = json!({
             "unit": column.unit,
             "components": column.components,
             "description": column.description,
         });
-        (column.name.clone(), told)
+        (column.name.clone(), entry)
     });
     let arrays: serde_json::Map<_, _> = arrays.collect();
     let about = json!({
@@ -74,9 +74,9 @@ fn about(frame: &Frame) -> String {
 }
 
 /// The head of an array, whose length is a multiple of 64.
-fn head(kind: &str, shape: &str) -> Vec<u8> {
+fn head(dtype: &str, shape: &str) -> Vec<u8> {
     let order = if IS_LITTLE { '<' } else { '>' };
-    let text = format!("{{'descr': '{order}{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+    let text = format!("{{'descr': '{order}{dtype}', 'fortran_order': False, 'shape': {shape}, }}");
     let length = (10 + text.len() + 1).next_multiple_of(64) - 10;
     let mut head = b"\x93NUMPY\x01\x00".to_vec();
     head.extend(u16::try_from(length).unwrap_or(u16::MAX).to_le_bytes());
@@ -86,7 +86,7 @@ fn head(kind: &str, shape: &str) -> Vec<u8> {
     head
 }
 
-fn kind(column: &Column) -> &'static str {
+fn dtype(column: &Column) -> &'static str {
     match Values::zeros(column.element, 0) {
         Values::F64(_) => "f8",
         Values::F32(_) => "f4",
@@ -125,8 +125,8 @@ mod tests {
 
     #[test]
     fn texts_have_four_bytes_a_letter() {
-        let (kind, bytes) = words(&["é".to_owned(), "ab".to_owned()]);
-        assert_eq!((kind.as_str(), bytes.len()), ("U2", 16));
+        let (dtype, bytes) = words(&["é".to_owned(), "ab".to_owned()]);
+        assert_eq!((dtype.as_str(), bytes.len()), ("U2", 16));
         assert_eq!(bytes[..4], u32::from('é').to_ne_bytes());
     }
 }

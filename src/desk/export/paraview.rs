@@ -17,20 +17,20 @@ pub fn write(run: Option<&Path>, snapshot: &Path, out: &mut NewFile) -> Result<(
     let known = Snapshot::open(snapshot)?;
     let series = run.map(|run| RunFolder::at(run).series());
     let series = series.filter(|series| series.is_file());
-    let shown = series.as_deref().unwrap_or(snapshot);
-    let place = absolute(shown);
+    let opened = series.as_deref().unwrap_or(snapshot);
+    let path = absolute(opened);
     let folder = absolute(out.path());
     let beside = folder
         .parent()
-        .and_then(|folder| place.strip_prefix(folder).ok());
-    let beside = beside.unwrap_or(&place);
+        .and_then(|folder| path.strip_prefix(folder).ok());
+    let beside = beside.unwrap_or(&path);
     let planes = known.symmetry.iter();
     let planes: Vec<Value> = planes
         .map(|p| json!([p.axis.index(), p.position]))
         .collect();
     let colours: Vec<_> = (0..known.bodies.len()).map(colour_of).collect();
     let mut script = String::new();
-    // What stands in names is never looked at for further marks.
+    // Names are never searched for further marks.
     for (k, part) in TEMPLATE.split('@').enumerate() {
         let value = match part {
             _ if k % 2 == 0 => {
@@ -39,7 +39,7 @@ pub fn write(run: Option<&Path>, snapshot: &Path, out: &mut NewFile) -> Result<(
             }
             "TITLE" => json!(known.title),
             "SNAPSHOTS" => json!(beside.to_string_lossy()),
-            "PLACE" => json!(place.to_string_lossy()),
+            "PLACE" => json!(path.to_string_lossy()),
             "BODIES" => json!(known.bodies),
             "COLOURS" => json!(colours),
             "RADIUS" => json!(0.5 * known.finest()),

@@ -1,7 +1,7 @@
-//! PLY: a cloud of points with what is told of each, and the colours that bodies have in pictures.
+//! PLY: a cloud of points with their columns, and the colours that bodies have in pictures.
 //!
-//! Layout: Turk, The PLY Polygon File Format (1994). It has no whole numbers of 64 bits, so that
-//! those of a column stand in two, the lower and the upper 32 bits.
+//! Layout: Turk, The PLY Polygon File Format (1994). It has no integers of 64 bits: those of a
+//! column are stored in two, the lower and the upper 32 bits.
 
 use std::fmt::Write as _;
 
@@ -32,11 +32,11 @@ fn rows(frame: &Frame, columns: &[&Column], piece: &Piece) -> Result<Vec<u8>, Ex
     let size = |values: &Values| values.bytes().len() / count.max(1);
     let mut rows = Vec::with_capacity(count * (3 + values.iter().map(size).sum::<usize>()));
     for row in 0..count {
-        for (place, values) in values.iter().enumerate() {
+        for (index, values) in values.iter().enumerate() {
             let size = size(values);
             let bytes = &values.bytes()[row * size..(row + 1) * size];
             rows.extend_from_slice(bytes);
-            if place == 0 {
+            if index == 0 {
                 rows.extend_from_slice(&colour_of(bodies[row]));
             }
         }
@@ -66,13 +66,13 @@ fn head(frame: &Frame) -> String {
         );
     }
     let _ = writeln!(head, "element vertex {}", frame.rows());
-    for (place, column) in columns().enumerate() {
+    for (index, column) in columns().enumerate() {
         for name in column.names() {
-            for (ending, kind) in types(column) {
-                let _ = writeln!(head, "property {kind} {name}{ending}");
+            for (ending, type_name) in types(column) {
+                let _ = writeln!(head, "property {type_name} {name}{ending}");
             }
         }
-        if place == 0 {
+        if index == 0 {
             for name in ["red", "green", "blue"] {
                 let _ = writeln!(head, "property uchar {name}");
             }

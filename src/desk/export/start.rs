@@ -1,4 +1,4 @@
-//! Where particles were at the start of the run: its first snapshot tells it.
+//! Positions of particles at the start of the run, from its first snapshot.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ pub struct Start {
 }
 
 impl Start {
-    /// Opens the first snapshot, which stands beside another of the same run.
+    /// Opens the first snapshot, in the folder of another of the same run.
     pub fn beside(path: &Path) -> Result<Self, ExportError> {
         let first = path.with_file_name(RunFolder::snapshot_name(0));
         if !first.is_file() {
@@ -32,15 +32,15 @@ impl Start {
         Ok(Self { file, ids })
     }
 
-    /// Where some particles were (m); NaN of those that were not there.
-    pub fn places(&self, ids: &[u64]) -> Result<Vec<[f64; 3]>, ExportError> {
+    /// The initial positions of some particles (m); NaN of those that were not there.
+    pub fn positions(&self, ids: &[u64]) -> Result<Vec<[f64; 3]>, ExportError> {
         let row = |id: &u64| self.ids.binary_search(id).ok();
         let rows: Vec<Option<usize>> = ids.iter().map(row).collect();
         let first = rows.iter().flatten().min().copied().unwrap_or(0);
         let end = rows.iter().flatten().max().map_or(first, |last| last + 1);
         let points = self.file.points(first..end)?;
-        let place = |row: Option<usize>| row.map_or([f64::NAN; 3], |row| points[row - first]);
-        Ok(rows.into_iter().map(place).collect())
+        let position = |row: Option<usize>| row.map_or([f64::NAN; 3], |row| points[row - first]);
+        Ok(rows.into_iter().map(position).collect())
     }
 }
 

@@ -15,7 +15,7 @@ const LINES: usize = 2048;
 #[derive(Debug, Clone, Copy)]
 pub struct Printed<'a> {
     pub column: &'a Column,
-    /// What is written for the numbers 0, 1, 2, …, if not these.
+    /// Words for the numbers 0, 1, 2, …, if any.
     pub words: Option<&'a [String]>,
 }
 
@@ -29,12 +29,12 @@ impl<'a> Printed<'a> {
     }
 }
 
-/// How lines look.
+/// The style of lines.
 #[derive(Debug, Clone, Copy)]
 pub struct Style {
-    /// What stands between values.
+    /// Between values.
     pub separator: u8,
-    /// What is no number.
+    /// The word for NaN.
     pub nan: &'static str,
 }
 
@@ -93,7 +93,8 @@ fn lines<'a>(
     Ok(text)
 }
 
-/// A text without blanks, quotes and what is not printed, for formats whose words end at blanks.
+/// A text without blanks, quotes and characters that are not printed, for formats whose words end
+/// at blanks.
 pub fn word(text: &str) -> String {
     let sound = |c: char| !(c.is_whitespace() || c.is_control() || "\"'\\=".contains(c));
     let word: String = text

@@ -55,8 +55,8 @@ impl Values {
         each!(self, values => bytemuck::cast_slice_mut(values))
     }
 
-    /// Adds one to a line of text, with the fewest digits that give it back; `nan` stands for what
-    /// is no number.
+    /// Adds one to a line of text, with the fewest digits that give it back; `nan` is written for
+    /// NaN.
     pub fn print(&self, index: usize, nan: &str, text: &mut Vec<u8>) {
         let _ = match self {
             Self::F64(values) if values[index].is_nan() => text.write_all(nan.as_bytes()),

@@ -11,7 +11,7 @@ use super::frame::Frame;
 use super::values::{IS_LITTLE, Values};
 use files::output::NewFile;
 
-/// What a particle is: VTK's cell of one point.
+/// VTK's type of a cell of one point.
 const VERTEX: u8 = 1;
 /// Rows whose cells are made at a time.
 const CELLS: u64 = 1 << 17;
@@ -32,7 +32,7 @@ enum Content<'a> {
 
 /// Writes a snapshot: a vertex for each particle.
 pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
-    let mut place = 0;
+    let mut offset = 0;
     let mut head = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
          byte_order=\"{}\" header_type=\"UInt64\">\n<UnstructuredGrid>\n",
@@ -51,9 +51,9 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
             let (opening, keys) = array.element.split_once('>').unwrap_or_default();
             let _ = writeln!(
                 head,
-                "<DataArray {opening} format=\"appended\" offset=\"{place}\">{keys}</DataArray>"
+                "<DataArray {opening} format=\"appended\" offset=\"{offset}\">{keys}</DataArray>"
             );
-            place += 8 + array.bytes;
+            offset += 8 + array.bytes;
         }
         let _ = writeln!(head, "</{tag}>");
     }
@@ -70,8 +70,8 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
 fn groups(frame: &Frame) -> [(&'static str, Vec<Declared<'_>>); 3] {
     let rows = frame.rows();
     let declared = |column| declared(column, rows);
-    let cells = |name: &str, kind: &str, size: u64, content| Declared {
-        element: format!("type=\"{kind}\" Name=\"{name}\">"),
+    let cells = |name: &str, type_name: &str, size: u64, content| Declared {
+        element: format!("type=\"{type_name}\" Name=\"{name}\">"),
         bytes: rows * size,
         content,
     };
@@ -91,7 +91,7 @@ fn groups(frame: &Frame) -> [(&'static str, Vec<Declared<'_>>); 3] {
 
 /// A column as an array, with its unit.
 fn declared(column: &Column, rows: u64) -> Declared<'_> {
-    let kind = match Values::zeros(column.element, 0) {
+    let type_name = match Values::zeros(column.element, 0) {
         Values::F64(_) => "Float64",
         Values::F32(_) => "Float32",
         Values::I64(_) => "Int64",
@@ -101,7 +101,7 @@ fn declared(column: &Column, rows: u64) -> Declared<'_> {
     };
     let width = column.components.len();
     let mut element = format!(
-        "type=\"{kind}\" Name=\"{}\" NumberOfComponents=\"{width}\"",
+        "type=\"{type_name}\" Name=\"{}\" NumberOfComponents=\"{width}\"",
         column.name
     );
     for (k, name) in column.components.iter().enumerate().filter(|_| width > 1) {
@@ -143,7 +143,7 @@ fn write_array(frame: &Frame, content: &Content, out: &mut NewFile) -> Result<()
     Ok(())
 }
 
-/// What is told of the whole: time, step, names of bodies, title.
+/// Description of the whole: time, step, names of bodies, title.
 fn field_data(frame: &Frame) -> String {
     let mut text = format!(
         "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" \

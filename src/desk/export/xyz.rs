@@ -16,8 +16,8 @@ const STYLE: Style = Style {
     nan: "nan",
 };
 
-/// Adds a frame. The species of a particle is the name of its body. Z, by which ASE tells atoms since it
-/// knows the names of elements alone, is the body's number, from one on.
+/// Adds a frame. The species of a particle is the name of its body. Z, which separates atoms in ASE
+/// beyond the names of elements, is the body's number, from one on.
 pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     let bodies: Vec<String> = (frame.snapshot.bodies.iter())
         .map(|name| word(name))
@@ -27,11 +27,11 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     let position = &frame.position;
     let mut columns = Vec::new();
     let mut properties = Vec::new();
-    let mut add = |column, words, told: Vec<Property>| {
+    let mut add = |column, words, more: Vec<Property>| {
         columns.push(Printed { column, words });
-        properties.extend(told);
+        properties.extend(more);
     };
-    let one = |name: &str, kind, width| vec![(name.to_owned(), kind, width)];
+    let one = |name: &str, type_code, width| vec![(name.to_owned(), type_code, width)];
     if let Some(body) = frame.column("body") {
         add(body, Some(&bodies[..]), one("species", 'S', 1));
         add(position, None, one("pos", 'R', 3));
@@ -39,10 +39,10 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
     } else {
         add(position, None, one("pos", 'R', 3));
     }
-    add(&radius, None, told(&radius));
+    add(&radius, None, properties_of(&radius));
     for column in &frame.columns {
         if !["body", "radius"].contains(&column.name.as_str()) {
-            add(column, None, told(column));
+            add(column, None, properties_of(column));
         }
     }
     out.put(head(frame, &columns, &properties, &bodies).as_bytes())?;
@@ -54,7 +54,8 @@ type Property = (String, char, usize);
 
 fn head(frame: &Frame, columns: &[Printed], properties: &[Property], bodies: &[String]) -> String {
     let properties = properties.iter();
-    let properties = properties.map(|(name, kind, width)| format!("{name}:{kind}:{width}"));
+    let properties =
+        properties.map(|(name, type_code, width)| format!("{name}:{type_code}:{width}"));
     let properties: Vec<String> = properties.collect();
     let unit = |printed: &Printed| {
         let column = printed.column;
@@ -75,14 +76,14 @@ fn head(frame: &Frame, columns: &[Printed], properties: &[Property], bodies: &[S
 }
 
 /// Properties of a column: a vector is one, a tensor has one for each component.
-fn told(column: &Column) -> Vec<Property> {
-    let kind = match Values::zeros(column.element, 0) {
+fn properties_of(column: &Column) -> Vec<Property> {
+    let type_code = match Values::zeros(column.element, 0) {
         Values::F64(_) | Values::F32(_) => 'R',
         _ => 'I',
     };
     if column.components.len() == 3 {
-        return vec![(column.name.clone(), kind, 3)];
+        return vec![(column.name.clone(), type_code, 3)];
     }
     let names = column.names().into_iter();
-    names.map(|name| (name, kind, 1)).collect()
+    names.map(|name| (name, type_code, 1)).collect()
 }

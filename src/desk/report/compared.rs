@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::found::{Rows, Run, figure_in_words, told, without_paths};
-use super::html::{Html, missing, note, or_untold, table, table_of_texts};
+use super::html::{Html, missing, note, or_reason, table, table_of_texts};
 use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
+use super::run_files::{Rows, Run, figure_in_words, with_unit, without_paths};
 use super::sections::verdict;
 use files::output::RunFolder;
 use model::differences::{Difference, differences};
@@ -40,7 +40,7 @@ pub fn compare(a: &RunFolder, b: &RunFolder) -> String {
 }
 
 fn verdicts(runs: &[Run; 2]) -> Html {
-    let one = |run: &Run| Html::of("h3", &run.name).then(verdict::tell(run));
+    let one = |run: &Run| Html::of("h3", &run.name).then(verdict::render(run));
     runs.iter().map(one).collect()
 }
 
@@ -53,8 +53,8 @@ fn cases(runs: &[Run; 2]) -> Result<Html, String> {
             .map_err(|reason| format!("of {}: {reason}", run.name))?;
         serde_json::to_value(case).map_err(|error| error.to_string())
     };
-    let found = differences(&value(&runs[0])?, &value(&runs[1])?);
-    if found.is_empty() {
+    let differences = differences(&value(&runs[0])?, &value(&runs[1])?);
+    if differences.is_empty() {
         return Ok(Html::of("p", "Nothing: their cases are the same."));
     }
     let word = |value: &Option<Value>| {
@@ -62,15 +62,21 @@ fn cases(runs: &[Run; 2]) -> Result<Html, String> {
             .as_ref()
             .map_or("not stated".to_owned(), figure_in_words)
     };
-    let row = |found: &Difference| vec![found.path.clone(), word(&found.a), word(&found.b)];
+    let row = |differences: &Difference| {
+        vec![
+            differences.path.clone(),
+            word(&differences.a),
+            word(&differences.b),
+        ]
+    };
     Ok(table_of_texts(
         &["key", &runs[0].name, &runs[1].name],
-        found.iter().map(row),
+        differences.iter().map(row),
     ))
 }
 
 /// Numbers of a tree by dotted names.
-fn numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
+fn numbers(name: &str, value: &Value, numbers_of: &mut Vec<(String, f64)>) {
     match value {
         Value::Object(parts) => {
             for (part, value) in parts {
@@ -79,11 +85,11 @@ fn numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
                 } else {
                     format!("{name}.{part}")
                 };
-                numbers(&below, value, found);
+                numbers(&below, value, numbers_of);
             }
         }
         Value::Number(number) => {
-            found.extend(number.as_f64().map(|number| (name.to_owned(), number)));
+            numbers_of.extend(number.as_f64().map(|number| (name.to_owned(), number)));
         }
         _ => {}
     }
@@ -92,12 +98,12 @@ fn numbers(name: &str, value: &Value, found: &mut Vec<(String, f64)>) {
 /// Figures of the summaries that are numbers, with what B has more than A.
 fn figures(runs: &[Run; 2]) -> Result<Html, String> {
     let mut all: [Vec<(String, f64)>; 2] = Default::default();
-    for (run, found) in runs.iter().zip(&mut all) {
+    for (run, numbers_of) in runs.iter().zip(&mut all) {
         let summary = run
             .summary
             .as_ref()
             .map_err(|reason| format!("of {}: {reason}", run.name))?;
-        numbers("", &Value::Object(summary.clone()), found);
+        numbers("", &Value::Object(summary.clone()), numbers_of);
     }
     let [a, b] = &all;
     let rows = a.iter().filter_map(|(name, one)| {
@@ -120,7 +126,7 @@ fn figures(runs: &[Run; 2]) -> Result<Html, String> {
     )))
 }
 
-/// How much more B is than A.
+/// The excess of B over A.
 fn relative(a: f64, b: f64) -> Html {
     let text = if a.to_bits() == b.to_bits() {
         "same".to_owned()
@@ -134,7 +140,7 @@ fn relative(a: f64, b: f64) -> Html {
     Html::element("span", &[("class", "figure")], Html::text(&text))
 }
 
-/// What there is of each body that both have.
+/// The table of the bodies that both have.
 fn bodies(runs: &[Run; 2]) -> Result<Html, String> {
     let read = |run: &Run| {
         Rows::read(&run.folder.bodies()).map_err(|reason| format!("of {}: {reason}", run.name))
@@ -168,13 +174,13 @@ fn bodies(runs: &[Run; 2]) -> Result<Html, String> {
             rows.push(vec![
                 Html::text(name),
                 Html::text(&column.replace('_', " ")),
-                Html::text(&told(x, a.unit(here))),
-                Html::text(&told(y, b.unit(there))),
+                Html::text(&with_unit(x, a.unit(here))),
+                Html::text(&with_unit(y, b.unit(there))),
                 relative(x, y),
             ]);
         }
     }
-    let times = [&a, &b].map(|rows| rows.shown(rows.len() - 1, "time"));
+    let times = [&a, &b].map(|rows| rows.cell(rows.len() - 1, "time"));
     let head = [
         "body",
         "figure",
@@ -240,10 +246,10 @@ fn pictures(runs: &[Run; 2]) -> Html {
     let mut sources = Vec::new();
     let mut warnings = Html::default();
     for run in runs {
-        let (found, damaged) = snapshots(run);
+        let (available, damaged) = snapshots(run);
         let warning = |reason: String| missing(&format!("{}: {reason}", run.name));
         warnings.push(damaged.into_iter().map(warning).collect());
-        sources.push(last(run, &found));
+        sources.push(last(run, &available));
     }
     let sources: Result<Vec<Source>, String> = sources.into_iter().collect();
     let request = Request {
@@ -255,12 +261,12 @@ fn pictures(runs: &[Run; 2]) -> Html {
         let drawn = drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error));
         image(drawn, "The last section of both runs, side by side")
     });
-    or_untold(drawn).then(warnings)
+    or_reason(drawn).then(warnings)
 }
 
 /// The last of a run's snapshots (time in s, path).
-fn last(run: &Run, found: &[(f64, PathBuf)]) -> Result<Source, String> {
-    let Some((_, path)) = found.last() else {
+fn last(run: &Run, available: &[(f64, PathBuf)]) -> Result<Source, String> {
+    let Some((_, path)) = available.last() else {
         return Err(format!("{} has no snapshots that can be read", run.name));
     };
     Ok(Source {

@@ -28,12 +28,12 @@ impl Html {
         Self(escaped)
     }
 
-    /// Markup of our own, as it stands in the source.
+    /// Markup of the source.
     pub fn own(markup: &'static str) -> Self {
         Self(markup.to_owned())
     }
 
-    /// An element with attributes, whose values are escaped, around `inside`.
+    /// An element around `inside` with attributes, whose values are escaped.
     pub fn element(name: &'static str, attributes: &[(&'static str, &str)], inside: Self) -> Self {
         let mut markup = format!("<{name}");
         for (attribute, value) in attributes {
@@ -58,7 +58,8 @@ impl Html {
         Self::element(name, &[], Self::text(text))
     }
 
-    /// Data for the script, which no browser runs: JSON or base64, whose `<` are written as JSON writes them.
+    /// Data for the script, which no browser runs: JSON or base64, whose `<` are written as in
+    /// JSON.
     pub fn data(id: &str, kind: &str, content: &str) -> Self {
         let content = Self(content.replace('<', "\\u003c"));
         Self::element("script", &[("id", id), ("type", kind)], content)
@@ -92,7 +93,7 @@ impl FromIterator<Html> for Html {
     }
 }
 
-/// Elements that nothing stands in.
+/// Elements without content.
 const VOID: [&str; 2] = ["img", "input"];
 
 /// A table: names of the columns, and rows of cells.
@@ -134,8 +135,8 @@ pub fn missing(what: &str) -> Html {
     Html::element("p", &[("class", "missing")], Html::text(what))
 }
 
-/// A piece, or why it is not told.
-pub fn or_untold(piece: Result<Html, String>) -> Html {
+/// A piece, or why it is missing.
+pub fn or_reason(piece: Result<Html, String>) -> Html {
     piece.unwrap_or_else(|reason| missing(&format!("Not told: {reason}.")))
 }
 

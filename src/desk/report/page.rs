@@ -6,8 +6,8 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-use super::found::{Run, told};
-use super::html::{Html, missing, or_untold};
+use super::html::{Html, missing, or_reason};
+use super::run_files::{Run, with_unit};
 use super::sections::{
     case, contacts, energies, environment, figures, fragments, load, measures, pictures, steps,
     verdict,
@@ -21,15 +21,15 @@ const STYLE: &str = include_str!("page.css");
 /// Bytes that a page has at most, as long as nobody asks for more frames.
 const ROOM: usize = 24_000_000;
 
-/// What is asked for of a page.
+/// Options of a page.
 #[derive(Debug, Clone)]
-pub struct Asked {
+pub struct PageOptions {
     /// Most particles of a frame of the viewer, at most 300,000 of which are taken.
     pub particles: usize,
     /// Snapshots that the viewer shows; as many as keep the page below 25 MB if absent.
     pub frames: Option<usize>,
-    /// What `whipple fragments` tells of the last snapshot, or why it does not: for runs that tell no fragments
-    /// themselves.
+    /// The output of `whipple fragments` for the last snapshot, or its error: for runs without
+    /// tables of fragments.
     pub fragments: Result<String, String>,
 }
 
@@ -38,55 +38,55 @@ pub type Section = (&'static str, &'static str, Result<Html, String>);
 
 /// The page of a run.
 #[must_use]
-pub fn tell(folder: &RunFolder, asked: &Asked) -> String {
+pub fn render(folder: &RunFolder, options: &PageOptions) -> String {
     let run = Run::read(folder);
     let (snapshots, damaged) = snapshots(&run);
     let none = || Err("the run has no snapshots".to_owned());
     let drawn = if snapshots.is_empty() {
         none()
     } else {
-        pictures::tell(&run, &snapshots)
+        pictures::render(&run, &snapshots)
     };
     let warned = |section: Result<Html, String>| {
         let warnings = damaged.iter().map(|reason| missing(reason)).collect();
         section.map(|section| section.then(warnings))
     };
     let mut sections: Vec<Section> = vec![
-        ("verdict", "Verdict", Ok(verdict::tell(&run))),
+        ("verdict", "Verdict", Ok(verdict::render(&run))),
         ("pictures", "Pictures", warned(drawn)),
-        ("case", "Case", case::tell(&run)),
-        ("energies", "Energies", energies::tell(&run)),
-        ("steps", "Time line", steps::tell(&run)),
-        ("contacts", "Contact ledger", contacts::tell(&run)),
-        ("measures", "Measures", Ok(measures::tell(&run))),
+        ("case", "Case", case::render(&run)),
+        ("energies", "Energies", energies::render(&run)),
+        ("steps", "Time line", steps::render(&run)),
+        ("contacts", "Contact ledger", contacts::render(&run)),
+        ("measures", "Measures", Ok(measures::render(&run))),
         (
             "fragments",
             "Fragments",
-            fragments::tell(&run, &asked.fragments),
+            fragments::render(&run, &options.fragments),
         ),
-        ("load", "Load", Ok(load::tell(&run))),
-        ("environment", "Environment", environment::tell(&run)),
-        ("figures", "Figures", figures::tell(&run)),
+        ("load", "Load", Ok(load::render(&run))),
+        ("environment", "Environment", environment::render(&run)),
+        ("figures", "Figures", figures::render(&run)),
     ];
     let size = |section: &Section| section.2.as_ref().map_or(0, Html::len);
     let room = ROOM.saturating_sub(sections.iter().map(size).sum());
     let seen = if snapshots.is_empty() {
         none()
     } else {
-        viewer::tell(&run, &snapshots, asked.particles, asked.frames, room)
+        viewer::render(&run, &snapshots, options.particles, options.frames, room)
     };
     sections.insert(2, ("viewer", "Viewer", seen));
     whole(run.title(), &state(&run), sections)
 }
 
-/// The run's name and where it stands, in a line.
+/// The run's name and status, in a line.
 fn state(run: &Run) -> String {
     match &run.status {
         Ok(status) => format!(
             "Run {}, {} at {} after {} steps",
             run.name,
             status.state.name(),
-            told(status.time, "s"),
+            with_unit(status.time, "s"),
             status.step
         ),
         Err(reason) => format!("Run {}; {reason}", run.name),
@@ -95,20 +95,20 @@ fn state(run: &Run) -> String {
 
 /// The snapshots of a run (time in s, path) in the order of time, and what is said of those that cannot be read.
 pub fn snapshots(run: &Run) -> (Vec<(f64, PathBuf)>, Vec<String>) {
-    let (mut found, mut damaged) = (Vec::new(), Vec::new());
+    let (mut readable, mut damaged) = (Vec::new(), Vec::new());
     match run.folder.snapshot_files() {
         Err(error) => damaged.push(run.without_path(&error)),
         Ok(paths) => {
             for path in paths {
                 match SnapshotFile::open(&path).and_then(|file| file.time()) {
-                    Ok(time) => found.push((time, path)),
+                    Ok(time) => readable.push((time, path)),
                     Err(error) => damaged.push(run.without_path(&error)),
                 }
             }
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
-    (found, damaged)
+    readable.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+    (readable, damaged)
 }
 
 /// A whole page of sections.
@@ -121,7 +121,7 @@ pub fn whole(title: &str, state: &str, sections: Vec<Section>) -> String {
         .then(Html::of("p", state))
         .then(Html::element("nav", &[("aria-label", "Sections")], links));
     let section = |(id, title, content): Section| {
-        let inside = Html::of("h2", title).then(or_untold(content));
+        let inside = Html::of("h2", title).then(or_reason(content));
         Html::element("section", &[("id", id)], inside)
     };
     let sections = sections.into_iter().map(section).collect();
@@ -145,7 +145,8 @@ pub fn whole(title: &str, state: &str, sections: Vec<Section>) -> String {
     )
 }
 
-/// What the browser may do: run our script and no other, show pictures of the page itself, and ask nobody.
+/// Permissions of the browser: our script and no other, pictures of the page itself, and no
+/// network.
 fn policy() -> String {
     let digest = STANDARD.encode(Sha256::digest(viewer::SCRIPT));
     format!(

@@ -9,14 +9,14 @@ use plot::{Canvas, Chart};
 /// Width of charts (pixels).
 const WIDTH: u32 = 1000;
 
-/// A chart with a text for those who do not see it, or why there is none.
+/// A chart with an alternative text, or why there is none.
 pub fn chart(chart: Result<Chart, String>, alt: &str) -> Html {
     let draw = |chart: Chart| chart.draw(Some(WIDTH)).map_err(|error| error.to_string());
     image(chart.and_then(draw), alt)
 }
 
-/// A picture with a text for those who do not see it, or why there is none. As an image of its own it
-/// is drawn without the page's styles.
+/// A picture with an alternative text, or why there is none. As an image of its own it is drawn
+/// without the page's styles.
 pub fn image(canvas: Result<Canvas, String>, alt: &str) -> Html {
     match canvas {
         Ok(canvas) => {

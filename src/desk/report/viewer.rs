@@ -8,19 +8,19 @@ use std::path::PathBuf;
 
 use serde_json::json;
 
-use super::found::{Run, told};
 use super::html::{Html, note, swatch};
+use super::run_files::{Run, with_unit};
 use model::SymmetryPlane;
 use model::readable::short;
 use plot::hex;
 use scene::Scene;
 
-/// What runs in the browser.
+/// The script of the browser.
 pub const SCRIPT: &str = include_str!("viewer.js");
 
 /// The viewer of some snapshots (time in s, path) in at most `room` bytes, unless frames are asked for: all
 /// particles, or `particles` of them.
-pub fn tell(
+pub fn render(
     run: &Run,
     snapshots: &[(f64, PathBuf)],
     particles: usize,
@@ -59,9 +59,9 @@ pub fn tell(
     Ok(page)
 }
 
-/// How much of the run is shown.
+/// The share of the run that the viewer has.
 fn words(scene: &Scene, snapshots: usize) -> String {
-    let shown = if scene.kept < scene.total {
+    let amount = if scene.kept < scene.total {
         format!(
             "{} of {} particles are shown, chosen by their ids, each {} times as large",
             scene.kept,
@@ -72,7 +72,7 @@ fn words(scene: &Scene, snapshots: usize) -> String {
         format!("All {} particles are shown", scene.total)
     };
     format!(
-        "{shown}; {} of {snapshots} snapshots. Places are kept to 1/65536 of the box of a frame, values to \
+        "{amount}; {} of {snapshots} snapshots. Places are kept to 1/65536 of the box of a frame, values to \
          1/254 of their range. Beyond the ends of a scale colours are those of its ends; pink is no number. \
          Keys, once the picture is chosen: arrows turn, + and − zoom, space plays, comma and full stop step, \
          Home goes back. Mouse: drag turns, with Shift moves, the wheel zooms. Touch: one finger turns, two zoom \
@@ -121,7 +121,7 @@ fn time(scene: &Scene) -> Html {
     Html::element("div", &[("class", "row time")], row)
 }
 
-/// What colours show, and a plane that cuts.
+/// The choice of colours, and a plane that cuts.
 fn colours_and_cut(scene: &Scene) -> Html {
     let option = |(k, name): (usize, &str)| {
         Html::element("option", &[("value", &k.to_string())], Html::text(name))
@@ -148,8 +148,8 @@ fn boxes(scene: &Scene) -> Html {
         row.push(check("data-body", k, true, inside));
     }
     for (k, plane) in scene.mirrors.iter().enumerate() {
-        let (axis, place) = (plane.axis.name(), told(plane.position, "m"));
-        let name = Html::text(&format!("mirror in {axis} = {place}"));
+        let (axis, position) = (plane.axis.name(), with_unit(plane.position, "m"));
+        let name = Html::text(&format!("mirror in {axis} = {position}"));
         row.push(check("data-mirror", k, k + 1 < scene.mirrors.len(), name));
     }
     Html::element("div", &[("class", "row")], row)
@@ -169,12 +169,12 @@ fn check(attribute: &'static str, number: usize, ticked: bool, label: Html) -> H
     )
 }
 
-/// What the script is told of the scene.
+/// The data of the scene for the script.
 fn data(scene: &Scene) -> serde_json::Value {
     let frame = |frame: &frames::Frame| {
         json!({
             "n": frame.count,
-            "time": told(frame.time, "s"),
+            "time": with_unit(frame.time, "s"),
             "lower": frame.lower,
             "upper": frame.upper,
         })

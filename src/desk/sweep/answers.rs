@@ -1,4 +1,4 @@
-//! What a run answers: last rows of its tables, and its summary.
+//! Answers of a run: last rows of its tables, and its summary.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -23,10 +23,10 @@ const KEYS: &[&str] = &[
 ];
 /// Columns that are no answers.
 const OF_THE_ROW: &[&str] = &["step", "time"];
-/// Tables whose last rows are answers, if nothing else is asked for.
-const USUAL: &[&str] = &["bodies", "fragments", "measures"];
+/// Tables whose last rows are answers by default.
+const DEFAULT_TABLES: &[&str] = &["bodies", "fragments", "measures"];
 
-/// An answer as it stands in the table, and its unit; empty for none.
+/// An answer as it is in the table, and its unit; empty for none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Answer {
     /// A number, a word or nothing.
@@ -63,7 +63,8 @@ pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
     Ok(answers)
 }
 
-/// Whether an answer is asked for, by its whole name, or one of the usual ones if nothing is.
+/// `true` if an answer is asked for, by its whole name, or if nothing is and it is one of the
+/// default ones.
 #[must_use]
 pub fn is_wanted(name: &str, wanted: &[String]) -> bool {
     let begins = |with: &str| {
@@ -71,7 +72,7 @@ pub fn is_wanted(name: &str, wanted: &[String]) -> bool {
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
     if wanted.is_empty() {
-        USUAL.iter().any(|table| begins(table))
+        DEFAULT_TABLES.iter().any(|table| begins(table))
     } else {
         wanted.iter().any(|w| begins(w))
     }
@@ -84,14 +85,14 @@ fn text(path: &Path) -> Result<String, OutputError> {
 
 /// Adds the rows of the last time of a table.
 fn add_rows(answers: &mut Answers, table: &str, sheet: &Sheet) {
-    let place = |name: &str| sheet.names.iter().position(|n| n == name);
+    let column = |name: &str| sheet.names.iter().position(|n| n == name);
     let whole = |row: &&(usize, Vec<String>)| row.1.len() == sheet.names.len();
     let rows: Vec<&Vec<String>> = sheet.rows.iter().filter(whole).map(|row| &row.1).collect();
     let Some(last) = rows.last() else {
         return;
     };
-    let keys: Vec<usize> = KEYS.iter().filter_map(|key| place(key)).collect();
-    let time = place("time");
+    let keys: Vec<usize> = KEYS.iter().filter_map(|key| column(key)).collect();
+    let time = column("time");
     let is_of_end = |row: &&Vec<String>| time.is_none_or(|t| row[t] == last[t]);
     let of_end = rows.iter().copied().filter(is_of_end);
     let chosen: Vec<&Vec<String>> = if keys.is_empty() {
@@ -121,7 +122,7 @@ fn add_rows(answers: &mut Answers, table: &str, sheet: &Sheet) {
     }
 }
 
-/// Adds what stands in a JSON object, by dotted names.
+/// Adds the values of a JSON object, by dotted names.
 fn add_values(answers: &mut Answers, name: &str, value: &Json) {
     let text = match value {
         Json::Object(map) => {

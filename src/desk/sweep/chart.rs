@@ -35,9 +35,9 @@ pub fn draw(
             .into_iter()
             .find(|&k| numbers(&sheet, k).any(|n| n.is_some())),
         Some(name) => {
-            let found = answers.into_iter().find(|&k| sheet.names[k] == name);
+            let column = answers.into_iter().find(|&k| sheet.names[k] == name);
             let unknown = || SweepError::Typed(format!("the sweep has no answer `{name}`"));
-            Some(found.ok_or_else(unknown)?)
+            Some(column.ok_or_else(unknown)?)
         }
     };
     let chart = at.and_then(|at| chart(&sheet, keys, at));

@@ -1,9 +1,9 @@
-//! What a bisection asks of a run: `fragments.largest_mass<1 mg`, `history.interpenetrated==0`.
+//! The conditions of bisections: `fragments.largest_mass<1 mg`, `history.interpenetrated==0`.
 
 use super::answers::Answers;
 use model::units;
 
-/// How an answer is compared.
+/// A comparison operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Compared {
     Below,
@@ -15,12 +15,12 @@ enum Compared {
 /// Verdicts of plates that have failed, as designers of shields count them.
 const FAILED: [&str; 2] = ["detached spall", "perforated"];
 
-/// A question whose answer is yes or no.
+/// A condition on the answers of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// Whether an answer compares with something.
+    /// A comparison of an answer.
     Compares(Comparison),
-    /// Whether a plate has failed: that of a name, or the only one.
+    /// The failure of a plate: that of a name, or the only one.
     Failed(Option<String>),
 }
 
@@ -33,10 +33,11 @@ pub struct Comparison {
 }
 
 impl Condition {
-    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`, `failed` or `failed PLATE`.
+    /// Reads `NAME<NUMBER`, `NAME>NUMBER`, `NAME==WORD` or `NAME!=WORD`, `failed` or `failed
+    /// PLATE`.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message on a text of another form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let signs = [
             ("==", Compared::Equal),
@@ -54,11 +55,12 @@ impl Condition {
                 return Ok(Self::Failed(Some(name.to_owned())));
             }
         }
-        let found = signs.iter().find_map(|&(sign, compared)| {
+        let comparison = signs.iter().find_map(|&(sign, compared)| {
             let (name, with) = text.split_once(sign)?;
             Some((name.trim(), compared, with.trim()))
         });
-        let Some((name, compared, with)) = found.filter(|(name, _, _)| !name.is_empty()) else {
+        let Some((name, compared, with)) = comparison.filter(|(name, _, _)| !name.is_empty())
+        else {
             return Err(format!(
                 "`{text}` is no condition, such as `failed`, \
                  `bodies.sphere.largest_temperature>900 K` or `history.interpenetrated==0`"
@@ -74,10 +76,10 @@ impl Condition {
         }))
     }
 
-    /// Whether it holds.
+    /// `true` if it holds.
     ///
     /// # Errors
-    /// That the run has no such answer, or one that cannot be compared.
+    /// A message if the run has no such answer, or one that cannot be compared.
     pub fn holds(&self, answers: &Answers) -> Result<bool, String> {
         match self {
             Self::Compares(comparison) => comparison.holds(answers),
@@ -86,11 +88,11 @@ impl Condition {
     }
 }
 
-/// Whether a plate has failed: that of a name, or the only one.
+/// `true` if a plate has failed: that of a name, or the only one.
 fn has_failed(name: Option<&str>, answers: &Answers) -> Result<bool, String> {
-    let verdicts = answers.iter().filter_map(|(answer, told)| {
+    let verdicts = answers.iter().filter_map(|(answer, value)| {
         let plate = answer.strip_prefix("measures.")?.strip_suffix(".verdict")?;
-        Some((plate, told.text.as_str()))
+        Some((plate, value.text.as_str()))
     });
     let wanted = verdicts.filter(|(plate, _)| name.is_none_or(|name| name == *plate));
     match wanted.collect::<Vec<_>>()[..] {

@@ -1,4 +1,4 @@
-//! What the answers of a case become with finer spacings.
+//! Convergence of the answers of a case with its spacing.
 
 use super::answers::is_wanted;
 use super::richardson::extrapolate;
@@ -41,12 +41,14 @@ impl Converged {
                 continue;
             }
             let mut row = vec![name.clone(), answer.unit.clone()];
-            let shown = |value: &Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
-            row.extend(values.iter().map(shown));
-            let found = finest(&runs.iter().map(|run| run.0).collect::<Vec<_>>(), &values)
+            let text = |value: &Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
+            row.extend(values.iter().map(text));
+            let extrapolated = finest(&runs.iter().map(|run| run.0).collect::<Vec<_>>(), &values)
                 .and_then(|(spacings, values)| extrapolate(spacings, values));
-            let found = found.map(|f| [f.rate, f.limit, f.uncertainty]);
-            row.extend((0..3).map(|k| found.map_or_else(String::new, |f| format!("{:?}", f[k]))));
+            let extrapolated = extrapolated.map(|f| [f.rate, f.limit, f.uncertainty]);
+            row.extend(
+                (0..3).map(|k| extrapolated.map_or_else(String::new, |f| format!("{:?}", f[k]))),
+            );
             table.push(row);
         }
         Ok(Self(Sheet {

@@ -1,4 +1,4 @@
-//! What a sweep is of, as it was typed and as its folder keeps it.
+//! The definition of a sweep, as it was typed and as its folder keeps it.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ pub struct Definition {
     pub folder: PathBuf,
     /// The case.
     pub case: PathBuf,
-    /// Digest of the settled case.
+    /// Digest of the resolved case.
     #[serde(default)]
     pub digest: String,
     /// `--set` of all points.
@@ -35,12 +35,12 @@ pub struct Definition {
     pub bisect: Option<String>,
     /// Part of its range to which a bisection goes.
     pub within: f64,
-    /// Names that answers of the table begin with; the usual ones if empty.
+    /// Names that answers of the table begin with; the default ones if empty.
     pub answers: Vec<String>,
 }
 
 impl Definition {
-    /// Whether a folder is that of a sweep.
+    /// `true` if a folder is that of a sweep.
     #[must_use]
     pub fn is_in(folder: &Path) -> bool {
         folder.join(FILE).is_file()
@@ -83,7 +83,7 @@ impl Definition {
     /// The points of it.
     ///
     /// # Errors
-    /// What of it is wrong.
+    /// A message on an invalid definition.
     pub fn plan(&self) -> Result<Plan, String> {
         let varied: Result<Vec<Varied>, String> =
             self.vary.iter().map(|text| Varied::parse(text)).collect();
@@ -97,16 +97,16 @@ impl Definition {
         Plan::new(&varied?, bisect)
     }
 
-    /// The text of the settled case, without what varies.
+    /// The text of the resolved case, without the keys that vary.
     fn text(&self) -> Result<String, SweepError> {
         Ok(input::load(&self.case, &self.settings)?.resolved)
     }
 
-    /// The settled case.
+    /// The resolved case.
     ///
     /// # Errors
     /// [`SweepError::Case`].
-    pub fn settled(&self) -> Result<toml::Table, SweepError> {
+    pub fn resolved(&self) -> Result<toml::Table, SweepError> {
         let table = self.text()?.parse::<toml::Table>();
         table.map_err(|error| SweepError::Typed(error.to_string()))
     }

@@ -1,8 +1,8 @@
 //! Sweeps: a case run at many points, a process for each run.
 //!
-//! A point is the values of the keys that vary. Its run has a folder of its own, named after them, and
-//! this folder alone tells where the point stands. So a sweep may be killed at any time and goes on
-//! where it was, runs no point twice, and its table is the same as if nothing had happened.
+//! A point is the values of the keys that vary. Its run has a folder of its own, named after them,
+//! which alone gives the state of the point. So a sweep may be killed at any time and goes on where
+//! it was, runs no point twice, and its table is the same as if nothing had happened.
 
 mod answers;
 mod chart;
@@ -32,14 +32,14 @@ pub use values::Values;
 use files::input::InputError;
 use files::output::{OutputError, write_atomically};
 use model::readable::printable;
-use plan::{Found, Known, Plan};
+use plan::{Bisection, Known, Plan};
 use point::Point;
-use queue::{Running, Standing};
+use queue::{PointState, Running};
 use table::Ended;
 
-/// How often runs are looked at.
+/// Time between looks at runs.
 const PAUSE: Duration = Duration::from_millis(50);
-/// How often those of others are.
+/// Time between looks at runs of others.
 const PAUSE_FOR_OTHERS: Duration = Duration::from_secs(2);
 /// Exit code of a run that was asked to stop.
 const STOPPED: i32 = 75;
@@ -63,15 +63,15 @@ pub enum SweepError {
 pub struct Sweep {
     definition: Definition,
     plan: Plan,
-    /// The settled case.
+    /// The resolved case.
     case: toml::Table,
     launch: Launch,
     ends: BTreeMap<String, Ended>,
-    /// Points whose runs were asked to stop.
+    /// Points whose runs were stopped softly.
     stopped: Vec<String>,
 }
 
-/// How a sweep ended.
+/// The numbers of points of a sweep that has ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Points that have an answer.
@@ -89,7 +89,7 @@ impl Sweep {
     /// [`SweepError::Typed`], [`SweepError::Case`].
     pub fn new(definition: Definition, launch: Launch) -> Result<Self, SweepError> {
         let plan = definition.plan().map_err(SweepError::Typed)?;
-        let case = definition.settled()?;
+        let case = definition.resolved()?;
         let sweep = Self {
             definition,
             plan,
@@ -110,7 +110,7 @@ impl Sweep {
         Self { launch, ..self }
     }
 
-    /// How many points are known so far.
+    /// The number of known points.
     ///
     /// # Errors
     /// [`SweepError::Typed`].
@@ -123,7 +123,7 @@ impl Sweep {
         points.map_err(SweepError::Typed)
     }
 
-    /// What is known of points whose runs have ended; a point without an answer is known, too.
+    /// The conditions of points whose runs have ended; a point without an answer is among them.
     fn known(&self) -> Known {
         let condition = self.plan.bisected.as_ref().map(|b| &b.condition);
         let ends = self.ends.iter().map(|(name, ended)| {
@@ -136,12 +136,12 @@ impl Sweep {
         ends.collect()
     }
 
-    /// Runs what has not been run, so many runs at once, and keeps the tables up to date; tells what
-    /// happens line by line.
+    /// Runs the points that have not been run, `jobs` runs at once, and keeps the tables up to
+    /// date; passes each event to `report` as a line.
     ///
     /// # Errors
     /// [`SweepError::Output`].
-    pub fn run(&mut self, jobs: usize, mut tell: impl FnMut(&str)) -> Result<Tally, SweepError> {
+    pub fn run(&mut self, jobs: usize, mut report: impl FnMut(&str)) -> Result<Tally, SweepError> {
         let mut running: Vec<Running> = Vec::new();
         let mut looked: Option<Instant> = None;
         loop {
@@ -154,20 +154,20 @@ impl Sweep {
                 if is_running || self.is_over(point) || !(looks || running.len() < jobs) {
                     continue;
                 }
-                match self.launch.standing(point) {
-                    Standing::Open if running.len() < jobs => {
-                        tell(&format!("{}: runs", point.shown(&self.plan.keys)));
+                match self.launch.state(point) {
+                    PointState::Open if running.len() < jobs => {
+                        report(&format!("{}: runs", point.label(&self.plan.keys)));
                         running.push(self.launch.start(point)?);
                         waits = true;
                     }
-                    Standing::Open | Standing::Held => waits = true,
-                    end => changed |= self.end(point, end, &mut tell)?,
+                    PointState::Open | PointState::Held => waits = true,
+                    end => changed |= self.end(point, end, &mut report)?,
                 }
             }
             if looks {
                 looked = Some(Instant::now());
             }
-            changed |= self.collect(&points, &mut running, &mut tell)?;
+            changed |= self.collect(&points, &mut running, &mut report)?;
             if changed {
                 self.write()?;
             } else if waits {
@@ -186,22 +186,22 @@ impl Sweep {
     pub fn run_one(
         &mut self,
         number: usize,
-        mut tell: impl FnMut(&str),
+        mut report: impl FnMut(&str),
     ) -> Result<bool, SweepError> {
         let points = self.points()?;
         let Some(point) = number.checked_sub(1).and_then(|n| points.get(n)) else {
             let title = format!("there is no point {number}: the sweep has {}", points.len());
             return Err(SweepError::Typed(title));
         };
-        if self.launch.standing(point) == Standing::Open {
-            tell(&format!("{}: runs", point.shown(&self.plan.keys)));
+        if self.launch.state(point) == PointState::Open {
+            report(&format!("{}: runs", point.label(&self.plan.keys)));
             let mut running = vec![self.launch.start(point)?];
             while !running.is_empty() {
-                self.collect(&points, &mut running, &mut tell)?;
+                self.collect(&points, &mut running, &mut report)?;
                 std::thread::sleep(PAUSE);
             }
         }
-        Ok(self.launch.standing(point) == Standing::Finished)
+        Ok(self.launch.state(point) == PointState::Finished)
     }
 
     fn is_over(&self, point: &Point) -> bool {
@@ -212,13 +212,15 @@ impl Sweep {
     fn end(
         &mut self,
         point: &Point,
-        standing: Standing,
-        tell: &mut impl FnMut(&str),
+        state: PointState,
+        report: &mut impl FnMut(&str),
     ) -> Result<bool, SweepError> {
-        let ended = match standing {
-            Standing::Finished => Ended::Answered(answers::of_run(&self.launch.run_folder(point))?),
-            Standing::Failed(why) => Ended::Failed(why),
-            Standing::Open | Standing::Held => return Ok(false),
+        let ended = match state {
+            PointState::Finished => {
+                Ended::Answered(answers::of_run(&self.launch.run_folder(point))?)
+            }
+            PointState::Failed(why) => Ended::Failed(why),
+            PointState::Open | PointState::Held => return Ok(false),
         };
         let what = match (&ended, &self.plan.bisected) {
             (Ended::Answered(answers), Some(bisected)) => match bisected.condition.holds(answers) {
@@ -229,9 +231,9 @@ impl Sweep {
             (Ended::Answered(_), None) => "finished".to_owned(),
             (Ended::Failed(why), _) => format!("failed: {why}"),
         };
-        tell(&format!(
+        report(&format!(
             "{}: {}",
-            point.shown(&self.plan.keys),
+            point.label(&self.plan.keys),
             printable(&what)
         ));
         self.ends.insert(point.name.clone(), ended);
@@ -243,7 +245,7 @@ impl Sweep {
         &mut self,
         points: &[Point],
         running: &mut Vec<Running>,
-        tell: &mut impl FnMut(&str),
+        report: &mut impl FnMut(&str),
     ) -> Result<bool, SweepError> {
         let mut changed = false;
         let mut k = 0;
@@ -259,16 +261,16 @@ impl Sweep {
                 continue;
             };
             if code == STOPPED {
-                tell(&format!("{}: was stopped", point.shown(&self.plan.keys)));
+                report(&format!("{}: was stopped", point.label(&self.plan.keys)));
                 self.stopped.push(name);
                 continue;
             }
-            let standing = match self.launch.standing(point) {
-                Standing::Finished if code == 0 => Standing::Finished,
-                Standing::Failed(why) if !why.is_empty() => Standing::Failed(why),
-                _ => Standing::Failed(format!("exit code {code}, see {name}.log")),
+            let state = match self.launch.state(point) {
+                PointState::Finished if code == 0 => PointState::Finished,
+                PointState::Failed(why) if !why.is_empty() => PointState::Failed(why),
+                _ => PointState::Failed(format!("exit code {code}, see {name}.log")),
             };
-            changed |= self.end(point, standing, tell)?;
+            changed |= self.end(point, state, report)?;
         }
         Ok(changed)
     }
@@ -288,17 +290,17 @@ impl Sweep {
         let folder = &self.definition.folder;
         let sheet = table::points(&self.plan.keys, &self.rows()?, &self.definition.answers);
         write_atomically(&folder.join("sweep.csv"), &sheet.text())?;
-        if let Some(sheet) = table::limits(&self.plan, &self.found()?) {
+        if let Some(sheet) = table::limits(&self.plan, &self.bisections()?) {
             write_atomically(&folder.join("limits.csv"), &sheet.text())?;
         }
         Ok(())
     }
 
-    fn found(&self) -> Result<Vec<(Vec<values::Value>, Found)>, SweepError> {
+    fn bisections(&self) -> Result<Vec<(Vec<values::Value>, Bisection)>, SweepError> {
         let known = self.known();
         let all = self.plan.combinations().into_iter().map(|values| {
-            let found = self.plan.found(&self.case, &values, &known)?;
-            Ok((values, found))
+            let bisection = self.plan.bisection(&self.case, &values, &known)?;
+            Ok((values, bisection))
         });
         let all: Result<Vec<_>, String> = all.collect();
         all.map_err(SweepError::Typed)

@@ -1,8 +1,8 @@
-//! Which points a sweep has: a grid of all values, or the halves of a range in which a condition
+//! The points of a sweep: a grid of all values, or the halves of a range in which a condition
 //! changes.
 //!
-//! A plan is a pure function of what is known of its points, so a sweep that was killed goes on as if it
-//! had not been.
+//! A plan is a pure function of the known points, so a sweep that was killed goes on as if it had
+//! not been.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ const MOST: usize = 1_000_000;
 pub struct Varied {
     /// Dotted.
     pub key: String,
-    /// What it takes.
+    /// Its values.
     pub values: Values,
 }
 
@@ -30,7 +30,7 @@ impl Varied {
     /// Reads `key=values`.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message on a text of another form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let (key, values) = text
             .split_once('=')
@@ -48,11 +48,11 @@ impl Varied {
 /// A range that is bisected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bisected {
-    /// Where.
+    /// The range.
     pub range: Range,
-    /// What changes in it.
+    /// The condition that changes in it.
     pub condition: Condition,
-    /// The part of the range to which its place is told.
+    /// The tolerance of the change, as a share of the range.
     pub within: f64,
 }
 
@@ -63,16 +63,16 @@ pub struct Plan {
     pub keys: Vec<String>,
     /// Values of the keys of the grid.
     grid: Vec<Vec<Value>>,
-    /// What is bisected at each point of the grid.
+    /// The bisection at each point of the grid.
     pub bisected: Option<Bisected>,
 }
 
-/// Whether the condition holds at a point, by the point's name; of a point that failed nothing.
+/// The condition at a point, by the point's name; nothing for a point that failed.
 pub type Known = BTreeMap<String, Option<bool>>;
 
-/// What is known of a bisection.
+/// The state of a bisection.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Found {
+pub enum Bisection {
     /// Not yet all.
     Open,
     /// Between these two values the condition changes: where it does not hold, where it does.
@@ -87,7 +87,7 @@ impl Plan {
     /// The plan of some keys, the last of which is bisected if there is a condition.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message on keys or ranges that do not fit.
     pub fn new(varied: &[Varied], bisect: Option<(Condition, f64)>) -> Result<Self, String> {
         let keys: Vec<String> = varied.iter().map(|v| v.key.clone()).collect();
         if let Some(twice) = keys
@@ -158,9 +158,9 @@ impl Plan {
         let mut points = Vec::new();
         for values in self.combinations() {
             if self.bisected.is_some() {
-                let (mut asked, _) = self.search(case, &values, known)?;
-                asked.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-                points.extend(asked.into_iter().map(|(_, point)| point));
+                let (mut wanted, _) = self.search(case, &values, known)?;
+                wanted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+                points.extend(wanted.into_iter().map(|(_, point)| point));
             } else {
                 points.push(Point::new(case, &self.keys, values)?);
             }
@@ -168,57 +168,63 @@ impl Plan {
         Ok(points)
     }
 
-    /// What a bisection has found at some values of the grid.
+    /// The bisection at some values of the grid.
     ///
     /// # Errors
     /// Those of [`Point::new`].
-    pub fn found(&self, case: &Table, values: &[Value], known: &Known) -> Result<Found, String> {
-        self.search(case, values, known).map(|(_, found)| found)
+    pub fn bisection(
+        &self,
+        case: &Table,
+        values: &[Value],
+        known: &Known,
+    ) -> Result<Bisection, String> {
+        self.search(case, values, known)
+            .map(|(_, bisection)| bisection)
     }
 
-    /// Parts of the range that a bisection asks for, with their points, and what it has found.
+    /// Shares of the range that a bisection needs, with their points, and its state.
     fn search(
         &self,
         case: &Table,
         values: &[Value],
         known: &Known,
-    ) -> Result<(Vec<(f64, Point)>, Found), String> {
+    ) -> Result<(Vec<(f64, Point)>, Bisection), String> {
         let Some(bisected) = &self.bisected else {
-            return Ok((Vec::new(), Found::Open));
+            return Ok((Vec::new(), Bisection::Open));
         };
         let [from, to] = bisected.range.ends;
         let value = |part: f64| bisected.range.value(from + (to - from) * part);
-        let mut asked = Vec::new();
-        let mut ask = |part: f64| -> Result<Option<Option<bool>>, String> {
+        let mut wanted = Vec::new();
+        let mut want = |part: f64| -> Result<Option<Option<bool>>, String> {
             let mut values = values.to_vec();
             values.push(value(part));
             let point = Point::new(case, &self.keys, values)?;
             let answer = known.get(&point.name).copied();
-            asked.push((part, point));
+            wanted.push((part, point));
             Ok(answer)
         };
-        let ends = [ask(0.0)?, ask(1.0)?];
+        let ends = [want(0.0)?, want(1.0)?];
         let (Some(first), Some(last)) = (ends[0], ends[1]) else {
-            return Ok((asked, Found::Open));
+            return Ok((wanted, Bisection::Open));
         };
         let (Some(first), Some(last)) = (first, last) else {
-            return Ok((asked, Found::Failed));
+            return Ok((wanted, Bisection::Failed));
         };
         if first == last {
-            return Ok((asked, Found::Nowhere(first)));
+            return Ok((wanted, Bisection::Nowhere(first)));
         }
         let (mut low, mut high) = (0.0, 1.0);
         while high - low > bisected.within {
             let half = 0.5 * (low + high);
-            match ask(half)? {
-                None => return Ok((asked, Found::Open)),
-                Some(None) => return Ok((asked, Found::Failed)),
+            match want(half)? {
+                None => return Ok((wanted, Bisection::Open)),
+                Some(None) => return Ok((wanted, Bisection::Failed)),
                 Some(Some(holds)) if holds == first => low = half,
                 Some(Some(_)) => high = half,
             }
         }
         let (no, yes) = if first { (high, low) } else { (low, high) };
-        Ok((asked, Found::Between([value(no), value(yes)])))
+        Ok((wanted, Bisection::Between([value(no), value(yes)])))
     }
 }
 
@@ -272,13 +278,13 @@ mod tests {
             }
             assert_eq!(runs, 5);
             let values = &plan.combinations()[0];
-            let found = plan.found(&case, values, &known).unwrap();
+            let bisection = plan.bisection(&case, values, &known).unwrap();
             let expected = if turned {
                 ["6 m/s", "5 m/s"]
             } else {
                 ["5 m/s", "6 m/s"]
             };
-            assert_eq!(found, Found::Between(expected.map(Value::new)));
+            assert_eq!(bisection, Bisection::Between(expected.map(Value::new)));
         }
     }
 
@@ -291,10 +297,13 @@ mod tests {
         let all = |of: [Option<bool>; 2]| -> Known {
             points.iter().map(|p| p.name.clone()).zip(of).collect()
         };
-        let found = |known: &Known| plan.found(&case, &[], known).unwrap();
-        assert_eq!(found(&all([Some(true), Some(true)])), Found::Nowhere(true));
-        assert_eq!(found(&all([Some(true), None])), Found::Failed);
-        assert_eq!(found(&Known::new()), Found::Open);
+        let bisection = |known: &Known| plan.bisection(&case, &[], known).unwrap();
+        assert_eq!(
+            bisection(&all([Some(true), Some(true)])),
+            Bisection::Nowhere(true)
+        );
+        assert_eq!(bisection(&all([Some(true), None])), Bisection::Failed);
+        assert_eq!(bisection(&Known::new()), Bisection::Open);
     }
 
     #[test]

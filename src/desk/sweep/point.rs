@@ -16,17 +16,17 @@ const LONGEST: usize = 80;
 pub struct Point {
     /// Values in the order of the keys.
     pub values: Vec<Value>,
-    /// What `--set` is given, in this order.
+    /// The values of `--set`, in this order.
     pub settings: Vec<String>,
     /// Name of the folder of its run, which no other point has.
     pub name: String,
 }
 
 impl Point {
-    /// The point of some keys and values in a case, whose settled text is given.
+    /// The point of some keys and values in a case, whose resolved text is given.
     ///
     /// # Errors
-    /// What is wrong, for a length of something that is no vector with a direction.
+    /// A message, for a length of something that is no vector with a direction.
     pub fn new(case: &Table, keys: &[String], values: Vec<Value>) -> Result<Self, String> {
         let pairs = keys.iter().zip(&values);
         let settings = pairs.map(|(key, value)| setting(case, key, value));
@@ -41,7 +41,7 @@ impl Point {
 
     /// The point for people: `velocity = 3 km/s, angle = 45 deg`.
     #[must_use]
-    pub fn shown(&self, keys: &[String]) -> String {
+    pub fn label(&self, keys: &[String]) -> String {
         let pairs = keys.iter().zip(&self.values);
         let texts: Vec<String> = pairs
             .map(|(key, value)| format!("{} = {}", short(key), value.text))
@@ -56,8 +56,8 @@ pub fn short(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
-/// `key=value`; a number for a key that holds a vector sets the length of the vector, whose direction
-/// stays.
+/// `key=value`; a number for a key that holds a vector sets the length of the vector, whose
+/// direction stays.
 fn setting(case: &Table, key: &str, value: &Value) -> Result<String, String> {
     let of_case = find(case, key).and_then(Toml::as_array);
     let (Some(vector), Some((length, _))) = (of_case, value.number) else {
@@ -96,7 +96,7 @@ fn split(text: &str) -> Option<(f64, &str)> {
     })
 }
 
-/// What stands under a dotted key; bodies and other tables in a row go by their names or numbers.
+/// The value of a dotted key; bodies and other tables in a row go by their names or numbers.
 fn find<'a>(case: &'a Table, key: &str) -> Option<&'a Toml> {
     let mut parts = key.split('.').map(|part| part.trim().trim_matches('"'));
     let mut here = case.get(parts.next()?)?;
@@ -105,8 +105,8 @@ fn find<'a>(case: &'a Table, key: &str) -> Option<&'a Toml> {
             Toml::Table(table) => table.get(part)?,
             Toml::Array(tables) => {
                 let named = |table: &&Toml| table.get("name").and_then(Toml::as_str) == Some(part);
-                let found = tables.iter().find(named);
-                found.or_else(|| tables.get(part.parse::<usize>().ok()?))?
+                let table = tables.iter().find(named);
+                table.or_else(|| tables.get(part.parse::<usize>().ok()?))?
             }
             _ => return None,
         };
@@ -128,10 +128,10 @@ fn name(keys: &[String], values: &[Value]) -> String {
             }
         };
         let words = value.text.replace(' ', "").replace('/', "p");
-        let shown: String = words.chars().map(kept).collect();
+        let kept_words: String = words.chars().map(kept).collect();
         let _ = write!(
             text,
-            "{}={shown}_",
+            "{}={kept_words}_",
             short(key).replace(|c: char| !c.is_ascii_alphanumeric(), "_")
         );
     }

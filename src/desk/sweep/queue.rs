@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use super::point::Point;
 use files::output::{OutputError, Phase, Presence, RunFolder};
 
-/// How runs are started.
+/// The way to start runs.
 #[derive(Debug, Clone)]
 pub struct Launch {
     /// This program.
@@ -26,9 +26,9 @@ pub struct Launch {
     pub threads: usize,
 }
 
-/// Where a point stands.
+/// The state of a point.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Standing {
+pub enum PointState {
     /// It has not been run, or not to its end.
     Open,
     /// A process that is not ours runs it.
@@ -54,19 +54,19 @@ impl Launch {
         RunFolder::at(&self.folder.join(&point.name))
     }
 
-    /// Where a point stands, by what its folder says.
+    /// The state of a point, by its folder.
     #[must_use]
-    pub fn standing(&self, point: &Point) -> Standing {
+    pub fn state(&self, point: &Point) -> PointState {
         let folder = self.run_folder(point);
         if matches!(Presence::of(folder.path()), Presence::Held(_)) {
-            return Standing::Held;
+            return PointState::Held;
         }
         match folder.status() {
-            Ok(status) if status.state == Phase::Finished => Standing::Finished,
+            Ok(status) if status.state == Phase::Finished => PointState::Finished,
             Ok(status) if status.state == Phase::Failed => {
-                Standing::Failed(status.reason.unwrap_or_default())
+                PointState::Failed(status.reason.unwrap_or_default())
             }
-            _ => Standing::Open,
+            _ => PointState::Open,
         }
     }
 
@@ -134,7 +134,7 @@ impl Running {
     /// Its exit code, once it has ended; -1 if a signal ended it.
     ///
     /// # Errors
-    /// What the system says.
+    /// The error of the system.
     pub fn ended(&mut self) -> io::Result<Option<i32>> {
         let status = self.child.try_wait()?;
         Ok(status.map(|status| status.code().unwrap_or(-1)))

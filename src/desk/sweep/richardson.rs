@@ -1,7 +1,7 @@
-//! What an answer would be without spacing (Richardson 1911), and how far the finest one is from it
+//! The limit of an answer without spacing (Richardson 1911), and how far the finest one is from it
 //! (Roache 1994).
 
-/// What three spacings say of an answer.
+/// The extrapolation of an answer from three spacings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extrapolated {
     /// Order of convergence: the error is proportional to this power of the spacing.
@@ -68,11 +68,11 @@ mod tests {
             (1.5, [5.0, 3.0, 2.5]),
         ] {
             let answers = spacings.map(|h: f64| 7.0 - 0.3 * h.powf(rate));
-            let found = extrapolate(spacings, answers).unwrap();
-            assert!((found.rate - rate).abs() < 1e-9, "{found:?}");
-            assert!((found.limit - 7.0).abs() < 1e-9);
+            let extrapolated = extrapolate(spacings, answers).unwrap();
+            assert!((extrapolated.rate - rate).abs() < 1e-9, "{extrapolated:?}");
+            assert!((extrapolated.limit - 7.0).abs() < 1e-9);
             let error: f64 = 7.0 - answers[2];
-            assert!((found.uncertainty - 1.25 * error).abs() < 1e-9);
+            assert!((extrapolated.uncertainty - 1.25 * error).abs() < 1e-9);
         }
     }
 

@@ -11,7 +11,7 @@ use files::input;
 use files::output::{OutputError, Phase, RunFolder};
 use model::{Body, Shape};
 
-/// What is asked of a run if neither the sweep nor the caller asks for anything.
+/// The condition if neither the sweep nor the caller gives one.
 const FAILED: &str = "failed";
 
 /// A run as a shot.
@@ -23,7 +23,7 @@ pub struct Shot {
     pub diameter: f64,
     /// Its speed (m/s).
     pub speed: f64,
-    /// Whether the condition holds of what is left.
+    /// `true` if the condition holds after the run.
     pub failed: bool,
 }
 
@@ -44,8 +44,8 @@ pub fn shots(
         return Err(SweepError::Typed(format!("{folder} has no sweep")));
     }
     let definition = Definition::read(folder)?;
-    let asked = condition.or(definition.bisect.as_deref());
-    let condition = Condition::parse(asked.unwrap_or(FAILED)).map_err(SweepError::Typed)?;
+    let text = condition.or(definition.bisect.as_deref());
+    let condition = Condition::parse(text.unwrap_or(FAILED)).map_err(SweepError::Typed)?;
     let points = folder.join("points");
     let mut shots = Vec::new();
     for entry in fs::read_dir(&points).map_err(OutputError::io("read", &points))? {
@@ -90,8 +90,8 @@ fn ball<'a>(bodies: &'a [Body], name: Option<&str>) -> Result<(&'a Body, f64), S
         Some(name) => body.name == name,
         None => body.velocity.norm() > 0.0,
     };
-    let found: Vec<_> = balls.filter(|(body, _)| wanted(body)).collect();
-    match (&found[..], name) {
+    let projectiles: Vec<_> = balls.filter(|(body, _)| wanted(body)).collect();
+    match (&projectiles[..], name) {
         ([one], _) => Ok(*one),
         (_, Some(name)) => Err(format!("the case has no ball `{name}`")),
         ([], None) => Err("the case has no ball that flies".to_owned()),

@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 
 use super::answers::{Answers, is_wanted};
-use super::plan::{Found, Plan};
+use super::plan::{Bisection, Plan};
 use super::point::{Point, short};
 use super::values::Value;
 use files::output::Sheet;
 use model::units::Powers;
 
-/// How the run of a point ended.
+/// The end of the run of a point.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ended {
-    /// What it answers.
+    /// Its answers.
     Answered(Answers),
     /// Why it has no answer.
     Failed(String),
@@ -134,10 +134,10 @@ pub fn points(keys: &[String], rows: &[(Point, Option<Ended>)], wanted: &[String
 
 /// A row for each bisection: the values of the grid, between which values the condition changes.
 #[must_use]
-pub fn limits(plan: &Plan, found: &[(Vec<Value>, Found)]) -> Option<Sheet> {
+pub fn limits(plan: &Plan, bisections: &[(Vec<Value>, Bisection)]) -> Option<Sheet> {
     let bisected = plan.bisected.as_ref()?;
     let (last, others) = plan.keys.split_last()?;
-    let values: Vec<&[Value]> = found.iter().map(|(values, _)| &values[..]).collect();
+    let values: Vec<&[Value]> = bisections.iter().map(|(values, _)| &values[..]).collect();
     let columns = columns(others, &values);
     let ends = bisected.range.ends.map(|end| bisected.range.value(end));
     let column = Column::new(last, &plan.keys, ends.iter());
@@ -149,14 +149,14 @@ pub fn limits(plan: &Plan, found: &[(Vec<Value>, Found)]) -> Option<Sheet> {
     }
     names.push("state".to_owned());
     units.push(String::new());
-    let row = |(values, found): &(Vec<Value>, Found)| {
+    let row = |(values, bisection): &(Vec<Value>, Bisection)| {
         let mut row: Vec<String> = columns.iter().zip(values).map(|(c, v)| c.cell(v)).collect();
-        let (between, state) = match found {
-            Found::Open => (None, "open"),
-            Found::Between(values) => (Some(values), "found"),
-            Found::Nowhere(true) => (None, "always"),
-            Found::Nowhere(false) => (None, "never"),
-            Found::Failed => (None, "failed"),
+        let (between, state) = match bisection {
+            Bisection::Open => (None, "open"),
+            Bisection::Between(values) => (Some(values), "found"),
+            Bisection::Nowhere(true) => (None, "always"),
+            Bisection::Nowhere(false) => (None, "never"),
+            Bisection::Failed => (None, "failed"),
         };
         let middle = between.and_then(|[a, b]| Some(0.5 * (a.number?.0 + b.number?.0)));
         row.push(middle.map_or_else(String::new, |middle| format!("{middle:?}")));
@@ -166,7 +166,7 @@ pub fn limits(plan: &Plan, found: &[(Vec<Value>, Found)]) -> Option<Sheet> {
         row.push(state.to_owned());
         row
     };
-    let rows = found.iter().map(row).enumerate();
+    let rows = bisections.iter().map(row).enumerate();
     Some(Sheet {
         names,
         units,

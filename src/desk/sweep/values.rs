@@ -1,8 +1,8 @@
-//! What a key takes in a sweep: a list of values, or a range of numbers.
+//! The values of a key in a sweep: a list, or a range of numbers.
 
 use model::units::{self, Powers};
 
-/// How many values a range has that does not say.
+/// The default number of values of a range.
 const VALUES: usize = 5;
 /// Values of one key at most: more are a slip.
 const MOST: usize = 100_000;
@@ -37,10 +37,10 @@ pub struct Range {
 }
 
 impl Range {
-    /// A number of it in its unit, with as many digits as tell it from its neighbours.
+    /// A number of it in its unit, with as many digits as separate it from its neighbours.
     #[must_use]
     pub fn value(&self, number: f64) -> Value {
-        // What a hundred-thousandth of the range does not change is round-off.
+        // Below a hundred-thousandth of the range it is round-off.
         let width = (self.ends[1] - self.ends[0]).abs();
         let digits = (8.0 - width.log10().floor()).clamp(0.0, 17.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 17
@@ -64,11 +64,11 @@ pub enum Values {
 }
 
 impl Values {
-    /// Reads `3, 5, 7 km/s` (a unit at the end holds for numbers without), `3..9 km/s` (five values)
-    /// or `3..9/7 km/s` (seven).
+    /// Reads `3, 5, 7 km/s` (a unit at the end holds for numbers without), `3..9 km/s` (five
+    /// values) or `3..9/7 km/s` (seven).
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message on a text of another form.
     pub fn parse(text: &str) -> Result<Self, String> {
         if let Some((from, rest)) = text.split_once("..") {
             return range(from, rest);
@@ -113,7 +113,7 @@ fn is_of_number(c: char) -> bool {
     c.is_ascii_digit() || matches!(c, '.' | '+' | '-')
 }
 
-/// Reads what stands on both sides of `..`.
+/// Reads both sides of `..`.
 fn range(from: &str, rest: &str) -> Result<Values, String> {
     let number = |text: &str| {
         let parsed = text.trim().parse::<f64>().ok().filter(|x| x.is_finite());
@@ -129,8 +129,8 @@ fn range(from: &str, rest: &str) -> Result<Values, String> {
                 .find(|c: char| !c.is_ascii_digit())
                 .unwrap_or(after.len());
             let (count, unit) = after.split_at(end);
-            let found = count.parse::<usize>().ok();
-            let count = found
+            let parsed = count.parse::<usize>().ok();
+            let count = parsed
                 .filter(|n| (2..=MOST).contains(n))
                 .ok_or_else(|| format!("`{count}` is no count of values, which is 2 to {MOST}"))?;
             (count, unit.trim())
@@ -147,7 +147,7 @@ fn range(from: &str, rest: &str) -> Result<Values, String> {
     Ok(Values::Range(range, count))
 }
 
-/// Parts between commas that stand in no brackets and no quotes.
+/// Parts between commas outside brackets and quotes.
 fn split(text: &str) -> Vec<&str> {
     let (mut parts, mut begin, mut depth, mut quote) = (Vec::new(), 0, 0_usize, None);
     for (at, c) in text.char_indices() {

@@ -115,7 +115,7 @@ impl Outset {
         let (mut places, mut reach) = (Vec::new(), Vec::new());
         for body in &case.bodies {
             let of = (body, case.dimension, case.symmetry.as_slice());
-            populate::places(of, brick, |site| {
+            populate::emit_unfitted(of, brick, |site| {
                 places.push(site.position);
                 reach.push(body.smoothing_length * edge(site.share, case.dimension));
             });

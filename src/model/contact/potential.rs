@@ -16,7 +16,7 @@ pub struct Potential {
     pub direction: ContactDirection,
 }
 
-/// Where the contact potential acts.
+/// The range of the contact potential.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PotentialRange {
     /// Everywhere in the kernel's support, 2h.

@@ -42,7 +42,7 @@ impl Polygon {
         self.corners.iter().zip(next).map(|(a, b)| [*a, *b])
     }
 
-    /// Whether two edges that are no neighbours meet.
+    /// `true` if two edges that are no neighbours meet.
     fn crosses(&self) -> bool {
         let edges: Vec<_> = self.edges().collect();
         let n = edges.len();
@@ -114,7 +114,7 @@ impl Polygon {
         p: [f64; 2],
         reach: f64,
         counts: impl Fn(&[[f64; 2]; 2]) -> bool,
-        mut tell: impl FnMut(Nearest),
+        mut emit: impl FnMut(Nearest),
     ) {
         let mut last: Option<[f64; 2]> = None;
         let mut first: Option<[f64; 2]> = None;
@@ -127,7 +127,7 @@ impl Polygon {
             first = first.or(Some(way));
             if distance < reach && distance > 0.0 && !is_known {
                 let way = way.map(|c| c / distance);
-                tell(Nearest { distance, way });
+                emit(Nearest { distance, way });
             }
         }
     }
@@ -139,7 +139,7 @@ fn to_edge(p: [f64; 2], [a, b]: [[f64; 2]; 2]) -> [f64; 2] {
     let to = [p[0] - a[0], p[1] - a[1]];
     let squared = along[0] * along[0] + along[1] * along[1];
     let t = ((to[0] * along[0] + to[1] * along[1]) / squared).clamp(0.0, 1.0);
-    // Of an end the place itself, so that two edges tell the same to the bit.
+    // The end itself, so that two edges give the same to the bit.
     let at = if t == 0.0 {
         a
     } else if t == 1.0 {

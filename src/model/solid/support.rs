@@ -1,15 +1,15 @@
-//! How far forms reach along a direction.
+//! The extent of primitives along a direction.
 
-use super::Form;
+use super::Primitive;
 use crate::Vec3;
 
-impl Form {
+impl Primitive {
     /// The largest `n·x` (m) of the form in its own frame, for a vector `n`; infinite along an axis
     /// along which it has no end.
     #[must_use]
     pub fn support(&self, n: &Vec3) -> f64 {
         let around = libm::hypot(n.x, n.y);
-        // Where it is infinite in a direction that does not count.
+        // Infinite extents do not count in directions without a component.
         let along = |length: f64, part: f64| if part == 0.0 { 0.0 } else { length * part };
         match self {
             Self::Box(half) => (0..3).map(|a| along(half[a], n[a].abs())).fold(0.0, plus),

@@ -8,21 +8,21 @@ use proptest::prelude::*;
 use super::*;
 use crate::{Mesh, Shape};
 
-fn placed(form: Form) -> Solid {
+fn placed(primitive: Primitive) -> Solid {
     let turn = rotation(&Vec3::new(1.0, 2.0, -0.5), 0.7);
     let at = Vec3::new(0.2, -0.3, 0.4);
-    Solid::Form(form, Placement::turned(turn, at))
+    Solid::Primitive(primitive, Placement::turned(turn, at))
 }
 
-fn revolved(corners: &[[f64; 2]]) -> Form {
-    Form::Revolved(Polygon::new(corners.to_vec()).unwrap())
+fn revolved(corners: &[[f64; 2]]) -> Primitive {
+    Primitive::Revolved(Polygon::new(corners.to_vec()).unwrap())
 }
 
-fn tetrahedron() -> Form {
+fn tetrahedron() -> Primitive {
     let x = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     let soup: Vec<_> = faces.iter().map(|f| f.map(|c: usize| x[c])).collect();
-    Form::Mesh(Arc::new(Mesh::new(&soup).unwrap()))
+    Primitive::Mesh(Arc::new(Mesh::new(&soup).unwrap()))
 }
 
 fn angle() -> Vec<[f64; 2]> {
@@ -37,7 +37,7 @@ fn angle() -> Vec<[f64; 2]> {
 }
 
 /// Each form with its volume.
-fn forms() -> Vec<(Form, f64)> {
+fn primitives() -> Vec<(Primitive, f64)> {
     let (radius, nose) = (0.5_f64, 1.2_f64);
     let arc = (radius * radius + nose * nose) / (2.0 * radius);
     let slices = 200_000_u32;
@@ -49,9 +49,9 @@ fn forms() -> Vec<(Form, f64)> {
         })
         .sum();
     vec![
-        (Form::Box(Vec3::new(0.5, 1.0, 0.25)), 1.0),
-        (Form::Ball(1.5), 4.5 * PI),
-        (Form::Ellipsoid(Vec3::new(1.0, 0.5, 0.25)), PI / 6.0),
+        (Primitive::Box(Vec3::new(0.5, 1.0, 0.25)), 1.0),
+        (Primitive::Ball(1.5), 4.5 * PI),
+        (Primitive::Ellipsoid(Vec3::new(1.0, 0.5, 0.25)), PI / 6.0),
         (
             revolved(&[[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]]),
             2.0 * PI,
@@ -66,14 +66,14 @@ fn forms() -> Vec<(Form, f64)> {
             0.4 * PI * 1.75,
         ),
         (
-            Form::Torus {
+            Primitive::Torus {
                 radius: 1.0,
                 tube: 0.3,
             },
             0.18 * PI * PI,
         ),
         (
-            Form::Ogive {
+            Primitive::Ogive {
                 radius,
                 arc,
                 nose,
@@ -82,7 +82,7 @@ fn forms() -> Vec<(Form, f64)> {
             nose_volume + 0.5 * PI,
         ),
         (
-            Form::Prism {
+            Primitive::Prism {
                 section: Polygon::new(angle()).unwrap(),
                 half: 0.75,
             },
@@ -93,9 +93,16 @@ fn forms() -> Vec<(Form, f64)> {
 }
 
 fn solids() -> Vec<Solid> {
-    let mut all: Vec<Solid> = forms().into_iter().map(|(form, _)| placed(form)).collect();
-    let ball = |x: f64| Solid::Form(Form::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
-    let cube = Solid::Form(Form::Box(Vec3::repeat(1.0)), Placement::at(Vec3::zeros()));
+    let mut all: Vec<Solid> = primitives()
+        .into_iter()
+        .map(|(primitive, _)| placed(primitive))
+        .collect();
+    let ball =
+        |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
+    let cube = Solid::Primitive(
+        Primitive::Box(Vec3::repeat(1.0)),
+        Placement::at(Vec3::zeros()),
+    );
     all.push(Solid::Union(vec![ball(-0.5), ball(0.5)]));
     all.push(Solid::Intersection(vec![ball(0.5), cube.clone()]));
     all.push(Solid::Difference(Box::new(cube), vec![ball(1.0)]));
@@ -104,13 +111,13 @@ fn solids() -> Vec<Solid> {
 
 #[test]
 fn volumes_are_those_of_geometry() {
-    for (form, volume) in forms() {
-        let told = form.volume(3);
+    for (primitive, volume) in primitives() {
+        let computed = primitive.volume(3);
         assert!(
-            (told / volume - 1.0).abs() < 1e-9,
-            "{form:?}: {told} for {volume}"
+            (computed / volume - 1.0).abs() < 1e-9,
+            "{primitive:?}: {computed} for {volume}"
         );
-        let solid = placed(form);
+        let solid = placed(primitive);
         let halved = volume::integrated(&|x| solid.distance(x), solid.bounds(), 3);
         let error = halved / volume - 1.0;
         println!("{error:e}");
@@ -123,7 +130,8 @@ fn volumes_are_those_of_geometry() {
 
 #[test]
 fn together_solids_have_the_volume_of_geometry() {
-    let ball = |x: f64| Solid::Form(Form::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
+    let ball =
+        |x: f64| Solid::Primitive(Primitive::Ball(1.0), Placement::at(Vec3::new(x, 0.0, 0.0)));
     // Two caps of height 1 − d/2.
     let lens = |d: f64| PI * (2.0 - d).powi(2) * (d * d + 4.0 * d) / (12.0 * d);
     let whole = 4.0 / 3.0 * PI;
@@ -256,10 +264,10 @@ fn directions() -> impl Iterator<Item = Vec3> {
 #[test]
 fn forms_reach_as_far_as_their_support() {
     let axes = [Vec3::x(), Vec3::y(), Vec3::z()];
-    for (form, _) in forms() {
-        let (lower, upper) = form.bounds();
+    for (primitive, _) in primitives() {
+        let (lower, upper) = primitive.bounds();
         for n in directions().chain(axes).chain(axes.map(|n| -n)) {
-            let support = form.support(&n);
+            let support = primitive.support(&n);
             // Into the surface from far beyond along the direction, from many places.
             let mut farthest = f64::NEG_INFINITY;
             let cells = 12;
@@ -267,7 +275,7 @@ fn forms_reach_as_far_as_their_support() {
                 let part = |k: i32| f64::from(k % cells) / f64::from(cells - 1);
                 let at = Vec3::new(part(k), part(k / cells), part(k / cells / cells));
                 let mut x = lower + at.component_mul(&(upper - lower));
-                let distance = form.distance(&x);
+                let distance = primitive.distance(&x);
                 if distance > 1e-9 {
                     continue;
                 }
@@ -276,23 +284,23 @@ fn forms_reach_as_far_as_their_support() {
             }
             assert!(
                 farthest <= support + 1e-9,
-                "{form:?} {n}: {farthest} beyond {support}"
+                "{primitive:?} {n}: {farthest} beyond {support}"
             );
             let size = (upper - lower).norm();
             assert!(
                 support - farthest < 0.12 * size,
-                "{form:?} {n}: {farthest} of {support}"
+                "{primitive:?} {n}: {farthest} of {support}"
             );
         }
         // Along axes it is the box, to rounding.
         for a in 0..3 {
             assert!(
-                (form.support(&axes[a]) - upper[a]).abs() < 1e-12,
-                "{form:?}"
+                (primitive.support(&axes[a]) - upper[a]).abs() < 1e-12,
+                "{primitive:?}"
             );
             assert!(
-                (form.support(&-axes[a]) + lower[a]).abs() < 1e-12,
-                "{form:?}"
+                (primitive.support(&-axes[a]) + lower[a]).abs() < 1e-12,
+                "{primitive:?}"
             );
         }
     }
@@ -302,14 +310,16 @@ fn forms_reach_as_far_as_their_support() {
 fn boxes_of_turned_solids_are_exact() {
     let turn = rotation(&Vec3::z(), 0.3);
     let (sin, cos) = 0.3_f64.sin_cos();
-    let put = |form, turn| Solid::Form(form, Placement::turned(turn, Vec3::new(1.0, 2.0, 3.0)));
+    let put = |primitive, turn| {
+        Solid::Primitive(primitive, Placement::turned(turn, Vec3::new(1.0, 2.0, 3.0)))
+    };
     let near = |solid: &Solid, lower: [f64; 3], upper: [f64; 3]| {
         let (l, u) = solid.bounds();
         let off = (l - Vec3::from(lower)).norm() + (u - Vec3::from(upper)).norm();
         assert!(off < 1e-12, "{solid:?}: {l} {u}");
     };
     let reach = 0.5 * cos + 0.25 * sin;
-    let brick = put(Form::Box(Vec3::new(0.5, 0.25, 1.0)), turn);
+    let brick = put(Primitive::Box(Vec3::new(0.5, 0.25, 1.0)), turn);
     let other = 0.5 * sin + 0.25 * cos;
     near(
         &brick,
@@ -325,7 +335,7 @@ fn boxes_of_turned_solids_are_exact() {
     let (x, z) = (2.0 * sin + 0.5 * cos, 2.0 * cos + 0.5 * sin);
     near(&rod, [1.0 - x, 1.5, 3.0 - z], [1.0 + x, 2.5, 3.0 + z]);
     let ring = put(
-        Form::Torus {
+        Primitive::Torus {
             radius: 1.0,
             tube: 0.25,
         },
@@ -346,7 +356,7 @@ fn boxes_of_turned_solids_are_exact() {
 }
 
 /// A box of triangles, each face of four.
-fn meshed(half: Vec3) -> Form {
+fn meshed(half: Vec3) -> Primitive {
     let mut soup = Vec::new();
     for axis in 0..3 {
         for sign in [-1.0, 1.0] {
@@ -364,16 +374,16 @@ fn meshed(half: Vec3) -> Form {
             }
         }
     }
-    Form::Mesh(Arc::new(Mesh::new(&soup).unwrap()))
+    Primitive::Mesh(Arc::new(Mesh::new(&soup).unwrap()))
 }
 
 #[test]
 fn a_mesh_tells_the_faces_of_what_it_is_a_mesh_of() {
     let half = Vec3::new(1.0, 0.8, 0.5);
-    let (cuboid, mesh) = (Form::Box(half), meshed(half));
-    let told = |form: &Form, x: &Vec3| {
+    let (cuboid, mesh) = (Primitive::Box(half), meshed(half));
+    let faces_of = |primitive: &Primitive, x: &Vec3| {
         let mut all: Vec<(f64, Vec3)> = Vec::new();
-        form.faces(x, 0.3, &mut |depth, normal| all.push((depth, normal)));
+        primitive.faces(x, 0.3, &mut |depth, normal| all.push((depth, normal)));
         all.sort_by(|a, b| a.1.iter().partial_cmp(b.1.iter()).unwrap());
         all
     };
@@ -385,7 +395,7 @@ fn a_mesh_tells_the_faces_of_what_it_is_a_mesh_of() {
             0.5 * libm::sin(3.7 * n + 2.0),
         ) * 0.999;
         assert!((cuboid.distance(&x) - mesh.distance(&x)).abs() < 1e-12);
-        let [a, b] = [told(&cuboid, &x), told(&mesh, &x)];
+        let [a, b] = [faces_of(&cuboid, &x), faces_of(&mesh, &x)];
         assert_eq!(a.len(), b.len(), "{x}: {a:?} {b:?}");
         for (a, b) in a.iter().zip(&b) {
             assert!(
@@ -399,7 +409,7 @@ fn a_mesh_tells_the_faces_of_what_it_is_a_mesh_of() {
 #[test]
 fn a_smooth_mesh_tells_one_face() {
     let (rows, radius) = (40_u32, 1.0);
-    let place = |i: u32, j: u32| {
+    let corner = |i: u32, j: u32| {
         let theta = PI * f64::from(i) / f64::from(rows);
         let turn = 2.0 * PI * f64::from(j % (2 * rows)) / f64::from(2 * rows);
         let (s, c) = (libm::sin(theta), libm::cos(theta));
@@ -415,24 +425,24 @@ fn a_smooth_mesh_tells_one_face() {
     for i in 0..rows {
         for j in 0..2 * rows {
             let [a, b, c, d] =
-                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| place(i, j));
+                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
             soup.extend([[a, b, c], [a, c, d]]);
         }
     }
-    let mesh = Form::Mesh(Arc::new(Mesh::new(&soup).unwrap()));
+    let mesh = Primitive::Mesh(Arc::new(Mesh::new(&soup).unwrap()));
     assert!((mesh.volume(3) / (4.0 / 3.0 * PI) - 1.0).abs() < 0.01);
     for n in directions() {
         for depth in [0.01, 0.1, 0.2] {
             let x = n * (0.997 - depth);
-            let mut told = Vec::new();
-            mesh.faces(&x, 0.3, &mut |depth, normal| told.push((depth, normal)));
-            let [(found, normal)] = told[..] else {
-                panic!("{n} {depth}: {told:?}");
+            let mut emitted = Vec::new();
+            mesh.faces(&x, 0.3, &mut |depth, normal| emitted.push((depth, normal)));
+            let [(computed, normal)] = emitted[..] else {
+                panic!("{n} {depth}: {emitted:?}");
             };
             // Triangles turn by 4.5° from one to the next.
             assert!(
-                (found - depth).abs() < 0.005 && normal.dot(&n) > 0.997,
-                "{n} {depth}: {found} {normal}"
+                (computed - depth).abs() < 0.005 && normal.dot(&n) > 0.997,
+                "{n} {depth}: {computed} {normal}"
             );
         }
     }

@@ -1,5 +1,5 @@
 //! Volumes by halving boxes: those inside count whole, the smallest ones at the surface by the
-//! plane that the distance tells.
+//! plane at the distance of the solid.
 
 use crate::Vec3;
 
@@ -21,7 +21,7 @@ pub(super) fn integrated(
     for a in dimension..3 {
         half[a] = 0.0;
     }
-    // What planes leave out of curved faces is a quarter with each halving (Richardson 1911).
+    // The error of planes at curved faces is a quarter with each halving (Richardson 1911).
     let shortest = half.max() / f64::from(1 << HALVINGS[dimension - 2]);
     let coarse = part(distance, middle, half, shortest, dimension);
     let fine = part(distance, middle, half, 0.5 * shortest, dimension);

@@ -1,4 +1,4 @@
-//! What makes triangles a closed surface, and a convex one.
+//! Tests of triangles for a closed surface, and for a convex one.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,24 +12,24 @@ pub enum MeshError {
     #[error("it has no triangles")]
     Empty,
     /// A triangle whose corners lie on a line.
-    #[error("triangle {triangle} has no area: its corners lie on a line near {place}")]
+    #[error("triangle {triangle} has no area: its corners lie on a line near {location}")]
     Flat {
         /// Number of the triangle, from one.
         triangle: usize,
         /// Its first corner.
-        place: String,
+        location: String,
     },
     /// Edges with a triangle on one side only.
-    #[error("it is not closed: {edges} edges have no second triangle, one of them near {place}")]
+    #[error("it is not closed: {edges} edges have no second triangle, one of them near {location}")]
     Open {
         /// Number of such edges.
         edges: usize,
         /// One end of the first of them.
-        place: String,
+        location: String,
     },
     /// A hole that is too wide to be closed.
     #[error(
-        "it is not closed: {edges} edges have no second triangle; its widest hole, near {place}, is \
+        "it is not closed: {edges} edges have no second triangle; its widest hole, near {location}, is \
          {width} wide, and only those up to one spacing ({widest}) are closed"
     )]
     Hole {
@@ -37,18 +37,18 @@ pub enum MeshError {
         edges: usize,
         /// Four times its area over its rim.
         width: String,
-        /// Which is still closed.
+        /// The widest hole that is still closed.
         widest: String,
         /// Its middle.
-        place: String,
+        location: String,
     },
     /// Two triangles run along an edge in the same direction.
     #[error(
-        "its triangles are not turned alike, or more than two meet in an edge, as near {place}"
+        "its triangles are not turned alike, or more than two meet in an edge, as near {location}"
     )]
     Tangled {
         /// One end of such an edge.
-        place: String,
+        location: String,
     },
     /// The triangles enclose nothing.
     #[error("it encloses no volume")]
@@ -59,7 +59,7 @@ pub enum MeshError {
 pub(super) type Edges = BTreeMap<(u32, u32), u32>;
 
 /// A place as errors name it.
-pub(super) fn place(x: &[f64; 3]) -> String {
+pub(super) fn location(x: &[f64; 3]) -> String {
     shown_vector(x, "m")
 }
 
@@ -74,7 +74,7 @@ pub(super) fn edges(triangles: &[[u32; 3]]) -> Edges {
     edges
 }
 
-/// Every directed edge stands once, and once in the other direction.
+/// Checks that every directed edge occurs once, and once in the other direction.
 pub(super) fn check_closed(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     let edges = edges(triangles);
     let open = |&(a, b): &(u32, u32)| !edges.contains_key(&(b, a));
@@ -82,7 +82,7 @@ pub(super) fn check_closed(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Resu
     if let Some((a, _)) = first {
         return Err(MeshError::Open {
             edges: edges.keys().filter(|edge| open(edge)).count(),
-            place: place(&corners[a as usize]),
+            location: location(&corners[a as usize]),
         });
     }
     if edges.len() < 3 * triangles.len() {
@@ -90,8 +90,8 @@ pub(super) fn check_closed(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Resu
         for t in triangles {
             for k in 0..3 {
                 if !seen.insert((t[k], t[(k + 1) % 3])) {
-                    let place = place(&corners[t[k] as usize]);
-                    return Err(MeshError::Tangled { place });
+                    let location = location(&corners[t[k] as usize]);
+                    return Err(MeshError::Tangled { location });
                 }
             }
         }
@@ -99,7 +99,7 @@ pub(super) fn check_closed(corners: &[[f64; 3]], triangles: &[[u32; 3]]) -> Resu
     Ok(())
 }
 
-/// Whether a closed surface is in one piece and no edge of it is a valley.
+/// `true` if a closed surface is in one piece and no edge of it is a valley.
 pub(super) fn is_convex(
     corners: &[[f64; 3]],
     triangles: &[[u32; 3]],

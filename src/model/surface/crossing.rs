@@ -7,20 +7,20 @@ use numerics::vector::{cross, dot, minus};
 /// Volumes below this share of what they could be are rounding: nothing crosses.
 const ROUNDING: f64 = 1e-9;
 
-/// Where triangles of a surface cut through each other.
+/// Triangles of a surface that cut through each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// How many pairs do.
+    /// The number of pairs.
     pub count: usize,
-    /// Where the first of them do (m).
+    /// The position of the first (m).
     pub at: [f64; 3],
 }
 
 impl Mesh {
-    /// Where its triangles cut through each other, if any do. Inside and outside mean little there.
+    /// Its triangles that cut through each other, if any do. Inside and outside mean little there.
     #[must_use]
     pub fn crossing(&self) -> Option<Crossing> {
-        let mut found: Option<Crossing> = None;
+        let mut first: Option<Crossing> = None;
         for (n, t) in (0..).zip(&self.triangles) {
             let x = self.at(n);
             let side = |pick: fn(f64, f64) -> f64| -> [f64; 3] {
@@ -33,22 +33,22 @@ impl Mesh {
                     partners.push(m);
                 }
             });
-            // The tree's order is no matter.
+            // The tree's order does not count.
             partners.sort_unstable();
             for m in partners {
                 let y = self.at(m);
                 let Some(at) = pierced(&x, &y).or_else(|| pierced(&y, &x)) else {
                     continue;
                 };
-                let crossing = found.get_or_insert(Crossing { count: 0, at });
+                let crossing = first.get_or_insert(Crossing { count: 0, at });
                 crossing.count += 1;
             }
         }
-        found
+        first
     }
 }
 
-/// Where an edge of the second triangle goes through the first.
+/// The point where an edge of the second triangle goes through the first.
 fn pierced(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     let normal = normal_area(x);
     let area = dot(&normal, &normal).sqrt();

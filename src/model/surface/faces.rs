@@ -19,13 +19,13 @@ struct Near {
 type Ridge = (u32, Option<u32>);
 
 impl Mesh {
-    /// Tells the faces that a point inside lies less than `reach` (m) below: depth (m), and the unit
-    /// normal out of the surface. Each is a place that is nearer than all others around it, and those
-    /// next to each other of nearly the same direction are one. Of a point outside it tells the nearest
-    /// face, with a negative depth.
-    pub fn faces(&self, x: &[f64; 3], reach: f64, tell: &mut dyn FnMut(f64, [f64; 3])) {
+    /// Passes the faces that a point inside lies less than `reach` (m) below to `emit`: depth (m),
+    /// and the unit normal out of the surface. Each is a place that is nearer than all others
+    /// around it, and those next to each other of nearly the same direction are one. Of a point
+    /// outside it passes the nearest face, with a negative depth.
+    pub fn faces(&self, x: &[f64; 3], reach: f64, emit: &mut dyn FnMut(f64, [f64; 3])) {
         let near = self.near(x, reach);
-        // Where an edge or a corner is the nearest place of all triangles that meet in it.
+        // Edges and corners that are the nearest place of all triangles that meet in them.
         let mut ridges: Vec<Ridge> = near.iter().filter_map(|n| self.ridge(n)).collect();
         ridges.sort_unstable();
         let is_least = |near: &Near| {
@@ -40,7 +40,7 @@ impl Mesh {
             };
             alike.count() == all
         };
-        let mut told: Vec<[f64; 3]> = Vec::new();
+        let mut emitted: Vec<[f64; 3]> = Vec::new();
         for (n, near) in near.iter().enumerate() {
             let pseudo = self.pseudo_normal(near.triangle as usize, near.feature);
             let way = minus(&near.point, x);
@@ -51,13 +51,13 @@ impl Mesh {
                 _ => way.map(|w| if rise > 0.0 { w / depth } else { -w / depth }),
             };
             if n == 0 && rise < 0.0 {
-                tell(-depth, normal);
+                emit(-depth, normal);
                 return;
             }
-            let is_new = || told.iter().all(|other| dot(other, &normal) < SAME_FACE);
+            let is_new = || emitted.iter().all(|other| dot(other, &normal) < SAME_FACE);
             if n == 0 || (rise > 0.0 && is_new() && is_least(near)) {
-                tell(depth, normal);
-                told.push(normal);
+                emit(depth, normal);
+                emitted.push(normal);
             }
         }
     }
@@ -99,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// What the distance (m) of a point from the surface is at least: that from its box, nought inside.
+    /// Least distance (m) of a point from the surface: that from its box, zero inside.
     #[must_use]
     pub fn distance_of_box(&self, x: &[f64; 3]) -> f64 {
         let (lower, upper) = self.bounds();
@@ -145,7 +145,7 @@ impl Mesh {
     }
 }
 
-/// What of a convex polygon lies above a plane through the origin.
+/// The part of a convex polygon above a plane through the origin.
 fn cut(polygon: &[[f64; 3]], n: &[f64; 3]) -> Vec<[f64; 3]> {
     let mut left = Vec::with_capacity(polygon.len() + 1);
     let next = polygon.iter().cycle().skip(1);

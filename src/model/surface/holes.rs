@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::closed::{MeshError, edges, place};
+use super::closed::{MeshError, edges, location};
 use super::soup::{Soup, normal_area, number};
 use crate::readable::shown;
 use numerics::vector::{cross, dot, minus};
@@ -10,7 +10,7 @@ use numerics::vector::{cross, dot, minus};
 /// Most corners of a hole that is filled, and of a polygon.
 const MOST_CORNERS: usize = 2000;
 
-/// What was closed.
+/// The closed holes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Closed {
     pub count: usize,
@@ -19,7 +19,7 @@ pub(super) struct Closed {
     pub at: [f64; 3],
 }
 
-/// Closes all holes of triangles that are turned alike. How wide a hole is tells four times its area
+/// Closes all holes of triangles that are turned alike. The width of a hole is four times its area
 /// over its rim, which is the diameter of a round one and twice the width of a crack.
 ///
 /// # Errors
@@ -64,7 +64,7 @@ pub(super) fn close(soup: &mut Soup, widest: f64) -> Result<Closed, MeshError> {
             edges: open.len(),
             width: shown(width, "m"),
             widest: shown(widest, "m"),
-            place: place(&at),
+            location: location(&at),
         }),
     }
 }
@@ -78,20 +78,20 @@ fn rims(open: &[(u32, u32)]) -> Vec<Vec<u32>> {
     let mut rims = Vec::new();
     for start in next.keys().copied().collect::<Vec<_>>() {
         let mut path = vec![start];
-        let mut places = BTreeMap::from([(start, 0)]);
+        let mut slots = BTreeMap::from([(start, 0)]);
         while let Some(&here) = path.last() {
             let Some(there) = next.get_mut(&here).and_then(Vec::pop) else {
                 break;
             };
             // A ring that meets itself in a corner is several.
-            if let Some(&at) = places.get(&there) {
+            if let Some(&at) = slots.get(&there) {
                 let rim = path.split_off(at);
                 for corner in &rim {
-                    places.remove(corner);
+                    slots.remove(corner);
                 }
                 rims.push(rim);
             }
-            places.insert(there, path.len());
+            slots.insert(there, path.len());
             path.push(there);
         }
     }
@@ -106,7 +106,7 @@ fn length(soup: &Soup, rim: &[u32]) -> f64 {
     edges.fold(0.0, |sum, edge| sum + edge)
 }
 
-/// How wide a hole is, by the area that its rim shows, and its middle (m).
+/// The width of a hole, by the area within its rim, and its middle (m).
 fn width(soup: &Soup, rim: &[u32]) -> (f64, [f64; 3]) {
     let mut middle = [0.0; 3];
     #[allow(clippy::cast_precision_loss)] // few corners

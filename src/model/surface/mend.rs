@@ -1,5 +1,5 @@
-//! Mends what is nearly a closed surface: corners a hair apart, triangles that stand there twice or are
-//! turned the other way, small holes.
+//! Mends nearly closed surfaces: corners a hair apart, triangles that occur twice or are turned the
+//! other way, small holes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,12 +20,12 @@ const GAP: f64 = 0.1;
 /// But not farther apart than this share of the size, where spacings are coarse.
 const WIDEST_GAP: f64 = 0.01;
 
-/// What of a surface was mended.
+/// The repairs of a surface.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mended {
     /// Corners that were laid onto others, and the widest gap that this closed (m).
     pub joined: (usize, f64),
-    /// Triangles that stood there twice.
+    /// Triangles that occurred twice.
     pub doubled: usize,
     /// Triangles without area.
     pub flat: usize,
@@ -40,11 +40,11 @@ pub struct Mended {
 }
 
 impl Mended {
-    /// What was done, for people; nothing if the surface was whole.
+    /// The repairs, for people; nothing if the surface was whole.
     #[must_use]
     pub fn words(&self) -> Option<String> {
         let mut done = Vec::new();
-        let mut tell = |count: usize, one: &str, many: &str, more: String| match count {
+        let mut report = |count: usize, one: &str, many: &str, more: String| match count {
             0 => {}
             1 => done.push(format!("1 {one}{more}")),
             _ => done.push(format!("{count} {many}{more}")),
@@ -53,30 +53,30 @@ impl Mended {
         let size = if self.holes == 1 { "" } else { "the widest " };
         let at = shown_vector(&at, "m");
         let size = format!(", {size}{} wide, near {at}", shown(width, "m"));
-        tell(self.holes, "hole closed", "holes closed", size);
+        report(self.holes, "hole closed", "holes closed", size);
         let (joined, gap) = self.joined;
         let gap = format!(" across gaps of up to {}", shown(gap, "m"));
-        tell(joined, "corner joined", "corners joined", gap);
+        report(joined, "corner joined", "corners joined", gap);
         let none = String::new;
-        tell(
+        report(
             self.turned,
             "triangle turned as those around it",
             "triangles turned as those around them",
             none(),
         );
-        tell(
+        report(
             self.shells,
             "shell turned inside out",
             "shells turned inside out",
             none(),
         );
-        tell(
+        report(
             self.doubled,
             "double triangle left out",
             "double triangles left out",
             none(),
         );
-        tell(
+        report(
             self.flat,
             "triangle without area left out",
             "triangles without area left out",
@@ -86,11 +86,11 @@ impl Mended {
     }
 }
 
-/// Makes a closed surface of triangles for particles of a spacing (m). Holes up to a spacing wide are
-/// closed, and gaps up to a tenth of one.
+/// Makes a closed surface of triangles for particles of a spacing (m). Holes up to a spacing wide
+/// are closed, and gaps up to a tenth of one.
 ///
 /// # Errors
-/// What cannot be mended, with its place.
+/// The first defect that cannot be mended, with its place.
 pub(super) fn mend(soup: &mut Soup, spacing: f64) -> Result<Mended, MeshError> {
     let size = soup.size();
     let mut mended = Mended::default();
@@ -122,7 +122,7 @@ pub(super) fn mend(soup: &mut Soup, spacing: f64) -> Result<Mended, MeshError> {
     Ok(mended)
 }
 
-/// Which corners are ends of open edges, if there are any.
+/// `true` for corners that are ends of open edges, if there are any.
 fn at_rim(soup: &Soup) -> Option<Vec<bool>> {
     let edges = edges(&soup.triangles);
     let mut is_at = vec![false; soup.corners.len()];

@@ -24,7 +24,7 @@ pub struct Mesh {
     edges: Vec<[[f64; 3]; 3]>,
     /// Pseudo-normals of corners.
     vertices: Vec<[f64; 3]>,
-    /// How many triangles meet in each corner.
+    /// The number of triangles that meet in each corner.
     pub(super) meeting: Vec<u32>,
     pub(super) tree: Tree,
     convex: bool,
@@ -46,7 +46,7 @@ impl Mesh {
     }
 
     /// Joins triangles that share corners to the bit. Triangles with two equal corners are left
-    /// out; shells whose normals point into the matter are turned.
+    /// out; shells whose normals point into the solid are turned.
     ///
     /// # Errors
     /// If the triangles are no closed surface.
@@ -56,8 +56,8 @@ impl Mesh {
         Self::nested(soup, Mended::default())
     }
 
-    /// The same of triangles that are nearly a closed surface, mended as far as particles of a spacing
-    /// (m) do not feel it; [`Self::mended`] tells what was done.
+    /// The same of triangles that are nearly a closed surface, mended as far as particles of a
+    /// spacing (m) do not feel it; [`Self::mended`] has the repairs.
     ///
     /// # Errors
     /// If the triangles are far from a closed surface.
@@ -90,7 +90,7 @@ impl Mesh {
         self.file.as_ref()
     }
 
-    /// What was mended of it.
+    /// The repairs.
     #[must_use]
     pub fn mended(&self) -> &Mended {
         &self.mended
@@ -198,7 +198,7 @@ impl Mesh {
         })
     }
 
-    /// The normal that tells the sides of a part of a triangle.
+    /// The normal that separates the sides of a part of a triangle.
     pub(super) fn pseudo_normal(&self, triangle: usize, feature: Feature) -> [f64; 3] {
         match feature {
             Feature::Face => self.faces[triangle],
@@ -231,7 +231,7 @@ impl Mesh {
         parts.fold(0.0, |sum, part| sum + part)
     }
 
-    /// Whether the surface is convex.
+    /// `true` if the surface is convex.
     #[must_use]
     pub fn is_convex(&self) -> bool {
         self.convex

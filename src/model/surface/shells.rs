@@ -1,8 +1,9 @@
-//! Which way triangles turn: alike along all edges, outwards in outer shells and inwards in cavities.
+//! The orientation of triangles: alike along all edges, outwards in outer shells and inwards in
+//! cavities.
 
 use std::collections::BTreeMap;
 
-use super::closed::{MeshError, edges, place};
+use super::closed::{MeshError, edges, location};
 use super::soup::{Soup, normal_area, number, undirected};
 use super::tree::Tree;
 use numerics::vector::{cross, dot, minus};
@@ -21,7 +22,7 @@ pub(super) fn align(soup: &mut Soup) -> Result<usize, MeshError> {
         }
     }
     let tangled = |corner: u32| MeshError::Tangled {
-        place: place(&soup.corners[corner as usize]),
+        location: location(&soup.corners[corner as usize]),
     };
     if let Some(((corner, _), _)) = meeting.iter().find(|(_, all)| all.len() > 2) {
         return Err(tangled(*corner));
@@ -81,8 +82,9 @@ struct Shell {
     upper: [f64; 3],
 }
 
-/// Turns the shells of a closed surface so that normals point out of the matter: outwards from those
-/// within no other or in a cavity, inwards from cavities. Gives how many were turned, if not all.
+/// Turns the shells of a closed surface so that normals point out of the solid: outwards from those
+/// within no other or in a cavity, inwards from cavities. Returns the number of turned ones, if not
+/// all.
 ///
 /// # Errors
 /// If a shell encloses nothing.
@@ -178,8 +180,8 @@ fn depth(soup: &Soup, shells: &[Shell], tree: &Tree, n: usize) -> usize {
     around.into_iter().filter(holds).count()
 }
 
-/// How often a shell winds about a point: the solid angles of its triangles over 4π (van Oosterom &
-/// Strackee 1983).
+/// The winding number of a shell about a point: the solid angles of its triangles over 4π (van
+/// Oosterom & Strackee 1983).
 fn winding(soup: &Soup, shell: &Shell, x: &[f64; 3]) -> f64 {
     let angles = shell.triangles.iter().map(|&n| {
         let [a, b, c] = soup.at(&soup.triangles[n as usize]).map(|y| minus(&y, x));
@@ -190,8 +192,8 @@ fn winding(soup: &Soup, shell: &Shell, x: &[f64; 3]) -> f64 {
     angles.fold(0.0, |sum, angle| sum + angle) / (4.0 * std::f64::consts::PI)
 }
 
-/// Triangles that stand there twice: of those that run alike one is kept, those that run against each
-/// other cancel out, as where two solids share a face. Gives how many went.
+/// Removes triangles that occur twice: of those that run alike one is kept, those that run against
+/// each other cancel out, as where two solids share a face. Returns the number of removed ones.
 pub(super) fn drop_doubles(soup: &mut Soup) -> usize {
     let before = soup.triangles.len();
     let key = |t: &[u32; 3]| {
@@ -221,8 +223,8 @@ pub(super) fn drop_doubles(soup: &mut Soup) -> usize {
     before - soup.triangles.len()
 }
 
-/// Triangles whose corners lie on a line give way to a swap of their longest edge, which changes no
-/// place of the surface. Gives how many there were.
+/// Replaces triangles whose corners lie on a line by a swap of their longest edge, which changes no
+/// place of the surface. Returns their number.
 pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
     let mut edges = edges(&soup.triangles);
     let longest = |soup: &Soup, t: &[u32; 3]| {
@@ -241,9 +243,9 @@ pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
     };
     let flat = |n: &usize| longest(soup, &soup.triangles[*n]).is_some();
     let mut open: Vec<usize> = (0..soup.triangles.len()).filter(flat).collect();
-    let found = open.len();
+    let flat_ones = open.len();
     // Each swap may leave another flat triangle, along a line of many corners.
-    let mut swaps = 100 * found;
+    let mut swaps = 100 * flat_ones;
     while let (Some(n), true) = (open.pop(), swaps > 0) {
         swaps -= 1;
         let t = soup.triangles[n];
@@ -269,5 +271,5 @@ pub(super) fn swap_flat(soup: &mut Soup, rounding: f64) -> usize {
             open.push(index);
         }
     }
-    found
+    flat_ones
 }

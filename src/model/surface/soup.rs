@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::closed::{MeshError, check_closed, place};
+use super::closed::{MeshError, check_closed, location};
 use numerics::vector::{cross, dot, minus};
 
 /// Triangles that may share corners.
@@ -65,10 +65,10 @@ impl Soup {
         edges.into_iter().fold(0.0, f64::max)
     }
 
-    /// Whether the triangles make a closed surface, each of some area.
+    /// Checks that the triangles make a closed surface, each of some area.
     ///
     /// # Errors
-    /// The first thing that is wrong.
+    /// The first defect.
     pub fn check(&self) -> Result<(), MeshError> {
         if self.triangles.is_empty() {
             return Err(MeshError::Empty);
@@ -78,7 +78,7 @@ impl Soup {
             if dot(&area, &area) <= 0.0 {
                 return Err(MeshError::Flat {
                     triangle: n + 1,
-                    place: place(&self.corners[t[0] as usize]),
+                    location: location(&self.corners[t[0] as usize]),
                 });
             }
         }
@@ -86,7 +86,7 @@ impl Soup {
     }
 }
 
-/// Whether two corners are one.
+/// `true` if two corners are one.
 pub(super) fn is_needle(t: &[u32; 3]) -> bool {
     t[0] == t[1] || t[1] == t[2] || t[2] == t[0]
 }

@@ -148,7 +148,7 @@ impl Tree {
         }
     }
 
-    /// The largest `n·x` (m) of what `support` tells that of, for a vector `n`.
+    /// The largest `n·x` (m) of the items by their `support`, for a vector `n`.
     pub fn farthest(&self, n: &[f64; 3], support: impl Fn(u32) -> f64) -> f64 {
         let beyond = |node: &Node| {
             (0..3).fold(0.0, |sum, a| {

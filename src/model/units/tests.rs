@@ -32,8 +32,8 @@ fn units_of_inches_and_pounds_are_rounded_once() {
         ("5 min", 300.0),
         ("2 lb", 0.907_184_74),
     ] {
-        let found = parse(text).unwrap().0;
-        assert!((found / si - 1.0).abs() < 1e-14, "{text}: {found}");
+        let parsed = parse(text).unwrap().0;
+        assert!((parsed / si - 1.0).abs() < 1e-14, "{text}: {parsed}");
     }
     for (text, si) in [("0.3 in", 0.00762), ("0.02 in", 5.08e-4), ("7 ft", 2.1336)] {
         assert_eq!(parse(text).unwrap().0.to_bits(), f64::to_bits(si), "{text}");
@@ -85,9 +85,9 @@ fn a_unit_goes_as_far_as_symbols_of_units_do() {
         (".5", 0.5, [0; 5], 2),
         ("2e3x", 2e3, [0; 5], 3),
     ] {
-        let found = leading(text).unwrap();
-        assert_eq!(found.value, value, "{text}");
-        assert_eq!((found.powers, found.length), (powers, length), "{text}");
+        let parsed = leading(text).unwrap();
+        assert_eq!(parsed.value, value, "{text}");
+        assert_eq!((parsed.powers, parsed.length), (powers, length), "{text}");
     }
     assert!(leading("20 °C").unwrap().celsius);
     assert!(!leading("20 °C/m").unwrap().celsius);

@@ -11,7 +11,7 @@ use crate::units::Readable;
 /// An axis of a chart.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Quantity {
-    /// What it is: `"pressure"`.
+    /// Its name: `"pressure"`.
     pub label: String,
     /// Its SI unit, in which the values are; empty for none.
     pub unit: String,
@@ -19,9 +19,9 @@ pub struct Quantity {
     pub span: Option<[f64; 2]>,
     /// Powers of ten at even distances; values that are not positive are left out.
     pub logarithmic: bool,
-    /// Whether an axis that has no span begins or ends at zero if its values are on one side.
+    /// `true` if an axis without a span begins or ends at zero if its values are on one side.
     pub from_zero: bool,
-    /// Whether an axis that has no span keeps some room beyond its values.
+    /// `true` if an axis without a span keeps some room beyond its values.
     pub room: bool,
 }
 
@@ -30,11 +30,11 @@ pub struct Quantity {
 pub struct Curve {
     /// Name in the legend; none if empty.
     pub name: String,
-    /// What a table of the chart calls it, if not as the legend does.
+    /// Its name in a table of the chart, if not that of the legend.
     pub in_tables: String,
     /// Colour.
     pub colour: Rgb,
-    /// How it is drawn.
+    /// The way it is drawn.
     pub mark: Mark,
     /// Points (x, y) in the axes' SI units, in order; one that is not finite interrupts a line.
     pub points: Vec<[f64; 2]>,
@@ -100,7 +100,7 @@ impl Chart {
         canvas.within(&frame, |canvas| {
             for curve in &self.curves {
                 let points = curve.points.iter().map(|&[a, b]| {
-                    let (a, b) = (x.place(a), y.place(b));
+                    let (a, b) = (x.position(a), y.position(b));
                     (a + b).is_finite().then(|| axes.at(a, b))
                 });
                 draw_curve(canvas, style, &frame, curve, points);
@@ -209,8 +209,8 @@ impl Ruler {
         }
     }
 
-    /// Where an SI value lies on the axis.
-    fn place(&self, value: f64) -> f64 {
+    /// The position of an SI value on the axis.
+    fn position(&self, value: f64) -> f64 {
         let value = value / self.unit.size;
         if self.logarithmic {
             value.log10()
@@ -319,7 +319,7 @@ mod tests {
         };
         let ruler = Ruler::new(&axis, [0.0, -1.0, 0.02, 5.0].into_iter(), 8.0);
         assert!(ruler.span[0] < 0.02_f64.log10() && ruler.span[0] > -2.0);
-        assert!(!ruler.place(0.0).is_finite() && (ruler.place(1.0)).abs() < 1e-15);
+        assert!(!ruler.position(0.0).is_finite() && (ruler.position(1.0)).abs() < 1e-15);
         assert!(
             ruler.ticks.labels.contains(&"0.1".to_owned()),
             "{:?}",

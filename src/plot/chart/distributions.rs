@@ -1,4 +1,4 @@
-//! What `distributions.csv` tells: profiles, and mass by speed and by angle.
+//! Charts of `distributions.csv`: profiles, and mass by speed and by angle.
 
 use std::path::{Path, PathBuf};
 
@@ -18,17 +18,17 @@ struct Bin<'a> {
     step: [f64; 3],
 }
 
-/// One chart for each distribution of some tables, with its name: a curve of steps for each measure at each time that
-/// is wanted. `told` says a time in words.
+/// One chart for each distribution of some tables, with its name: a curve of steps for each measure
+/// at each time that is wanted. `time_text` writes a time.
 ///
 /// # Errors
-/// [`PlotError::Table`] if a table or a column is missing or a number cannot be read, [`PlotError::Index`] if there is
-/// no such time.
+/// [`PlotError::Table`] if a table or a column is missing or a number cannot be read,
+/// [`PlotError::Index`] if there is no such time.
 pub fn distributions(
     tables: &[(String, PathBuf)],
     wanted: &Wanted,
     title: &str,
-    told: impl Fn(f64) -> String,
+    time_text: impl Fn(f64) -> String,
 ) -> Result<Vec<(String, Chart)>, PlotError> {
     let mut charts: Vec<(String, Chart)> = Vec::new();
     for (name, path) in tables {
@@ -39,7 +39,7 @@ pub fn distributions(
                 .iter()
                 .filter(|bin| bin.time.to_bits() == time.to_bits())
             {
-                let mut parts = vec![bin.measure.to_owned(), told(time)];
+                let mut parts = vec![bin.measure.to_owned(), time_text(time)];
                 if tables.len() > 1 {
                     parts.insert(0, name.clone());
                 }
@@ -78,11 +78,11 @@ fn add(charts: &mut Vec<(String, Chart)>, bin: &Bin, name: &str, title: &str) {
 /// A chart without curves for a distribution.
 fn empty(bin: &Bin, title: &str) -> Chart {
     let words = bin.distribution.replace('_', " ");
-    // What it is of, and what it goes along.
+    // The quantity, and its coordinate.
     let (what, along) = match words.split_once(" by ") {
         Some((what, along)) => (what.to_owned(), along.to_owned()),
         None => match words.split_once(" from ") {
-            Some((what, place)) => (what.to_owned(), format!("distance from {place}")),
+            Some((what, origin)) => (what.to_owned(), format!("distance from {origin}")),
             None => (words.clone(), "distance".to_owned()),
         },
     };
@@ -104,7 +104,7 @@ fn empty(bin: &Bin, title: &str) -> Chart {
     }
 }
 
-/// The times that are wanted, of those that a table tells.
+/// The times of a table that are wanted.
 fn times(bins: &[Bin], wanted: &Wanted, path: &Path) -> Result<Vec<f64>, PlotError> {
     let mut all: Vec<(f64, f64)> = bins.iter().map(|bin| (bin.time, bin.time)).collect();
     all.dedup();

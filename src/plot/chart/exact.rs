@@ -1,7 +1,7 @@
-//! Which cases have an exact answer, found from the resolved input of a run.
+//! The cases with an exact answer, recognised in the resolved input of a run.
 //!
-//! To teach plots another case: a variant of [`Exact`], a way to recognise it in [`Exact::of`],
-//! its [`Profile`], and a word in [`KNOWN`] and in the guide.
+//! To add another case: a variant of [`Exact`], a way to recognise it in [`Exact::of`], its
+//! [`Profile`], and a word in [`KNOWN`] and in the guide.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use files::input;
 use material::{Eos, Material, Strength};
 use model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
 
-/// What has an answer.
+/// The cases with an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
     that meet, whose outer ends may be moved at steps of velocity, and of two plates of \
     Mie-Grüneisen materials with strength = \"none\" until a shock reaches a free face, and of two \
@@ -48,7 +48,7 @@ pub enum Exact {
 
 /// A body as a stretch of the x axis.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct Segment<'a> {
     body: &'a Body,
     /// Index of the body.
     index: usize,
@@ -73,24 +73,24 @@ impl Exact {
 
     /// The answer for a case, or what it has that no answer covers.
     fn of(case: &Case) -> Result<Self, String> {
-        let mut parts = parts(case)?;
+        let mut segments = segments(case)?;
         if case.loads.has_gravity() || !case.loads.surfaces.is_empty() {
             return Err("there is gravity or a rigid surface".to_owned());
         }
         if !case.loads.absorbers.is_empty() {
             return Err("there is an absorbing zone".to_owned());
         }
-        let ends = outer_ends(case, &mut parts)?;
-        if let Some(bars) = parts.iter().map(bar).collect() {
+        let ends = outer_ends(case, &mut segments)?;
+        if let Some(bars) = segments.iter().map(bar).collect() {
             return Ok(Self::Bars(Row { bars, ends }));
         }
-        if let Some(gases) = parts.iter().map(gas).collect::<Option<Vec<_>>>() {
-            return two_gases(&parts, &gases, &ends);
+        if let Some(gases) = segments.iter().map(gas).collect::<Option<Vec<_>>>() {
+            return two_gases(&segments, &gases, &ends);
         }
         if ends.iter().any(|end| *end != End::Free) {
             return Err("plates are held or moved".to_owned());
         }
-        let plates = parts.iter().map(plate).collect::<Result<Vec<_>, _>>()?;
+        let plates = segments.iter().map(plate).collect::<Result<Vec<_>, _>>()?;
         match plates[..] {
             [left, right] => Ok(Self::Plates([left, right])),
             _ => Err(format!("there are {} plates", plates.len())),
@@ -115,12 +115,12 @@ impl Exact {
 }
 
 /// Two bodies of one gas in touch, their far ends free or moved as the gas there moves.
-fn two_gases(parts: &[Part], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Exact, String> {
-    if let (&[part], &[(gamma, gas)]) = (parts, gases) {
-        return gas_at_wall(&part, gamma, gas, ends);
+fn two_gases(segments: &[Segment], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Exact, String> {
+    if let (&[segment], &[(gamma, gas)]) = (segments, gases) {
+        return gas_at_wall(&segment, gamma, gas, ends);
     }
-    let (&[left, right], &[(gamma, a), (other, b)]) = (parts, gases) else {
-        return Err(format!("there are {} bodies of gas", parts.len()));
+    let (&[left, right], &[(gamma, a), (other, b)]) = (segments, gases) else {
+        return Err(format!("there are {} bodies of gas", segments.len()));
     };
     let gap = right.ends[0] - left.ends[1];
     if gap.abs() > 1e-6 * left.body.lattice.spacing || gamma != other {
@@ -136,8 +136,8 @@ fn two_gases(parts: &[Part], gases: &[(f64, Gas)], ends: &[End; 2]) -> Result<Ex
     Ok(Exact::Gas(riemann, left.ends[1], far))
 }
 
-/// Gas whose near end stands on a symmetry plane and whose far end is free.
-fn gas_at_wall(part: &Part, gamma: f64, gas: Gas, ends: &[End; 2]) -> Result<Exact, String> {
+/// Gas whose near end is at a symmetry plane and whose far end is free.
+fn gas_at_wall(segment: &Segment, gamma: f64, gas: Gas, ends: &[End; 2]) -> Result<Exact, String> {
     let at_rest = End::Moved(vec![(0.0, Some(0.0))]);
     if *ends != [at_rest, End::Free] {
         return Err("the gas has no wall, or its far end is held".to_owned());
@@ -147,28 +147,28 @@ fn gas_at_wall(part: &Part, gamma: f64, gas: Gas, ends: &[End; 2]) -> Result<Exa
         ..gas
     };
     let riemann = Riemann::new(gamma, image, gas).ok_or("a vacuum opens at the wall")?;
-    let [wall, far] = part.ends;
+    let [wall, far] = segment.ends;
     let ends = [(2.0 * wall - far, false), (far, false)];
     Ok(Exact::GasAtWall(riemann, wall, ends))
 }
 
 /// The ratio of specific heats and the initial state of an ideal gas.
-fn gas(part: &Part) -> Option<(f64, Gas)> {
-    let Eos::IdealGas(eos) = &part.material.eos else {
+fn gas(segment: &Segment) -> Option<(f64, Gas)> {
+    let Eos::IdealGas(eos) = &segment.material.eos else {
         return None;
     };
-    let inviscid = matches!(part.material.strength, Strength::None);
-    let ideal = eos.stiffening_pressure == 0.0 && part.material.failure.is_none();
+    let inviscid = matches!(segment.material.strength, Strength::None);
+    let ideal = eos.stiffening_pressure == 0.0 && segment.material.failure.is_none();
     let gas = Gas {
-        density: part.density,
-        velocity: part.body.velocity.x,
-        pressure: eos.response(part.density, part.energy).pressure,
+        density: segment.density,
+        velocity: segment.body.velocity.x,
+        pressure: eos.response(segment.density, segment.energy).pressure,
     };
     (inviscid && ideal).then_some((eos.gamma, gas))
 }
 
-/// The states of two gases until their waves meet the far ends, or what comes from free ones: a
-/// wave of their own at the speed of sound, behind which nothing is shown; from a place (m) on.
+/// The states of two gases until their waves meet the far ends, or the waves from free ones; those
+/// have the speed of sound, and nothing is drawn behind them; from a position (m) on.
 fn gas_profile(
     riemann: &Riemann,
     origin: f64,
@@ -185,19 +185,19 @@ fn gas_profile(
     let waves = riemann.waves().map(|wave| origin + wave[0] * time);
     let apart = span[0] <= waves[0] && waves[1] <= span[1];
     if apart {
-        let shown = [span[0].max(from), span[1]];
-        return Ok(vec![riemann.profile(origin, time, shown)]);
+        let visible = [span[0].max(from), span[1]];
+        return Ok(vec![riemann.profile(origin, time, visible)]);
     }
     let reason = format!("a wave has met an end or what comes from there; {KNOWN}");
     Err(PlotError::Exact { reason })
 }
 
 /// The bodies of a one-dimensional case from left to right, if each sees all others.
-fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
+fn segments(case: &Case) -> Result<Vec<Segment<'_>>, String> {
     if case.dimension != 1 {
         return Err(format!("the case has {} dimensions", case.dimension));
     }
-    let mut parts = Vec::new();
+    let mut segments = Vec::new();
     for (index, body) in case.bodies.iter().enumerate() {
         let Shape::Box { lower, upper } = &body.shape else {
             return Err(format!("body \"{}\" is no box", body.name));
@@ -209,7 +209,7 @@ fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
         if (0..index).any(unseen) {
             return Err("bodies do not see each other".to_owned());
         }
-        parts.push(Part {
+        segments.push(Segment {
             body,
             index,
             density: case.initial_density(body),
@@ -218,26 +218,26 @@ fn parts(case: &Case) -> Result<Vec<Part<'_>>, String> {
             ends: [lower.x, upper.x],
         });
     }
-    parts.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));
-    Ok(parts)
+    segments.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));
+    Ok(segments)
 }
 
-/// What holds the outer ends; cuts the parts at a symmetry plane and at moved particles.
-fn outer_ends(case: &Case, parts: &mut [Part]) -> Result<[End; 2], String> {
+/// The supports of the outer ends; cuts the segments at a symmetry plane and at moved particles.
+fn outer_ends(case: &Case, segments: &mut [Segment]) -> Result<[End; 2], String> {
     let mut ends = [End::Free, End::Free];
-    let last = parts.len() - 1;
+    let last = segments.len() - 1;
     if let Some(plane) = case.symmetry.first().map(|plane| plane.position)
-        && plane >= parts[0].ends[0]
+        && plane >= segments[0].ends[0]
     {
-        parts[0].ends[0] = plane;
+        segments[0].ends[0] = plane;
         ends[0] = End::Moved(vec![(0.0, Some(0.0))]);
     }
     for load in case.loads.velocities.iter().filter(|l| l.motion.has(0)) {
         let steps = End::Moved(steps(load)?);
-        let [first, second] = [&parts[0], &parts[last]].map(|part| moved(part, load));
+        let [first, second] = [&segments[0], &segments[last]].map(|segment| moved(segment, load));
         match (first, second) {
-            (Some([None, Some(edge)]), _) => (parts[0].ends[0], ends[0]) = (edge, steps),
-            (_, Some([Some(edge), None])) => (parts[last].ends[1], ends[1]) = (edge, steps),
+            (Some([None, Some(edge)]), _) => (segments[0].ends[0], ends[0]) = (edge, steps),
+            (_, Some([Some(edge), None])) => (segments[last].ends[1], ends[1]) = (edge, steps),
             _ => {
                 return Err(format!(
                     "load \"{}\" moves more than an outer end",
@@ -250,35 +250,35 @@ fn outer_ends(case: &Case, parts: &mut [Part]) -> Result<[End; 2], String> {
 }
 
 /// A linear elastic bar.
-fn bar(part: &Part) -> Option<Bar> {
-    let medium = finite_strain::Medium::of(part.material)?;
-    (part.density == medium.reference_density).then_some(Bar {
+fn bar(segment: &Segment) -> Option<Bar> {
+    let medium = finite_strain::Medium::of(segment.material)?;
+    (segment.density == medium.reference_density).then_some(Bar {
         medium,
-        left: part.ends[0],
-        length: part.ends[1] - part.ends[0],
-        velocity: part.body.velocity.x,
+        left: segment.ends[0],
+        length: segment.ends[1] - segment.ends[0],
+        velocity: segment.body.velocity.x,
     })
 }
 
 /// The outermost particles (m) that a load moves in a part, left and right; absent on a side
 /// where these are the part's own outermost. Nothing if the load moves none. A bar with a moved
 /// end begins at the last particle that is moved.
-fn moved(part: &Part, load: &VelocityLoad) -> Option<[Option<f64>; 2]> {
-    if load.body != part.index {
+fn moved(segment: &Segment, load: &VelocityLoad) -> Option<[Option<f64>; 2]> {
+    if load.body != segment.index {
         return None;
     }
-    let spacing = part.body.lattice.spacing;
-    let first = part.ends[0] + 0.5 * spacing;
-    let count = ((part.ends[1] - part.ends[0]) / spacing).round();
-    let place = |k: f64| first + k * spacing;
+    let spacing = segment.body.lattice.spacing;
+    let first = segment.ends[0] + 0.5 * spacing;
+    let count = ((segment.ends[1] - segment.ends[0]) / spacing).round();
+    let position = |k: f64| first + k * spacing;
     let low = ((load.region.above[0] - first) / spacing - 1e-6)
         .ceil()
         .max(0.0);
     let high = ((load.region.below[0] - first) / spacing + 1e-6)
         .floor()
         .min(count - 1.0);
-    let low_end = (low > 0.0).then(|| place(low));
-    let high_end = (high < count - 1.0).then(|| place(high));
+    let low_end = (low > 0.0).then(|| position(low));
+    let high_end = (high < count - 1.0).then(|| position(high));
     (low <= high).then_some([low_end, high_end])
 }
 
@@ -305,20 +305,21 @@ fn steps(load: &VelocityLoad) -> Result<Vec<(f64, Option<f64>)>, String> {
     Ok(steps)
 }
 
-fn plate(part: &Part) -> Result<Plate, String> {
-    let fluid = matches!(part.material.strength, Strength::None) && part.material.failure.is_none();
-    let medium = Medium::of(part.material).filter(|_| fluid);
+fn plate(segment: &Segment) -> Result<Plate, String> {
+    let fluid =
+        matches!(segment.material.strength, Strength::None) && segment.material.failure.is_none();
+    let medium = Medium::of(segment.material).filter(|_| fluid);
     let unknown = || {
         format!(
             "the material of body \"{}\" has more than that",
-            part.body.name
+            segment.body.name
         )
     };
     Ok(Plate {
         medium: medium.ok_or_else(unknown)?,
-        left: part.ends[0],
-        length: part.ends[1] - part.ends[0],
-        velocity: part.body.velocity.x,
+        left: segment.ends[0],
+        length: segment.ends[1] - segment.ends[0],
+        velocity: segment.body.velocity.x,
     })
 }
 

@@ -1,4 +1,4 @@
-//! How many fragments are as heavy, or as large, as any: from tables of all fragments.
+//! The number of fragments above a mass, or a size: from tables of all fragments.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use crate::PlotError;
 use crate::colour;
 use crate::header::Mark;
 
-/// What fragments are counted by.
+/// The quantity that fragments are counted by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum By {
     /// Mass.

@@ -1,5 +1,5 @@
-//! What a run's `history.csv`, `performance.csv` and `ranks.csv` tell, over time: energies, steps,
-//! momentum, defects, and how evenly the ranks are loaded.
+//! Charts of a run's `history.csv`, `performance.csv` and `ranks.csv` over time: energies, steps,
+//! momentum, defects, and the balance of the ranks.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::canvas::Rgb;
 use crate::colour;
 use crate::header::Mark;
 
-/// What is drawn of a run's history.
+/// The charts of a run's history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum History {
     /// Energies of the model.
@@ -20,9 +20,9 @@ pub enum History {
     TimeStep,
     /// Components of the momentum of all particles that are computed.
     Momentum,
-    /// What of the energy, and of that of contact, is not accounted for.
+    /// The changes of the energy, and of that of contact, that nothing accounts for.
     Defect,
-    /// What the busiest rank has over the mean.
+    /// The load of the busiest rank over the mean.
     Load,
     /// Work of each rank over the mean.
     Ranks,
@@ -60,7 +60,7 @@ impl History {
         }
     }
 
-    /// The table of a run that tells it.
+    /// The table of a run that has it.
     #[must_use]
     pub fn table(self) -> &'static str {
         match self {
@@ -229,7 +229,7 @@ fn by_reason(table: &Table, time: &[f64]) -> Result<Vec<Line>, String> {
     Ok(lines)
 }
 
-/// What the total energy has gained that loads have not put in, nor has left with particles; and the
+/// The total energy less that of loads and of particles that have left, from the start; and the
 /// energy of contact that its work and its heat do not account for.
 fn defects(table: &Table) -> Result<[Vec<f64>; 2], String> {
     let column = |name: &str| table.column(name);

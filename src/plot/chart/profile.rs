@@ -8,7 +8,7 @@ use crate::PlotError;
 use crate::canvas::INK;
 use crate::colour;
 use crate::header::Mark;
-use crate::snapshots::field::{Field, Shown};
+use crate::snapshots::field::{Drawn, Field};
 use crate::snapshots::plane::Plane;
 use crate::snapshots::slice::{self, slice};
 use crate::snapshots::snapshot::Snapshot;
@@ -19,7 +19,7 @@ use model::Axis;
 /// About how many of many curves have a name in the legend.
 const NAMED: usize = 10;
 
-/// What a profile runs along.
+/// The coordinate of a profile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Along {
     /// A line parallel to an axis.
@@ -53,15 +53,15 @@ impl Along {
     }
 }
 
-/// What to draw, as typed.
+/// A request for a profile, as typed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProfileRequest {
     /// A field, `FIELD.COMPONENT` or `von_mises`.
     pub field: String,
-    /// What the profile runs along.
+    /// The coordinate of the profile.
     pub along: Along,
-    /// Where the line crosses the other axes, `AXIS=POSITION,…`, or the point; planes of symmetry
-    /// or the middle of the model where it says nothing.
+    /// Positions of the line on the other axes, `AXIS=POSITION,…`, or the point; by default planes
+    /// of symmetry or the middle of the model.
     pub through: Option<String>,
     /// Thickness of the line; the rows beside it if absent.
     pub thickness: Option<String>,
@@ -69,7 +69,7 @@ pub struct ProfileRequest {
     pub range: Option<String>,
     /// `LOW:HIGH` of the coordinate; all particles if absent.
     pub view: Option<String>,
-    /// Whether the exact answer is drawn with it.
+    /// `true` if the exact answer is drawn with it.
     pub exact: bool,
 }
 
@@ -79,7 +79,7 @@ pub struct Profiles {
     chart: Chart,
 }
 
-/// Where a profile is taken.
+/// The line of a profile.
 struct Line {
     along: Along,
     through: [f64; 3],
@@ -105,7 +105,7 @@ impl Profiles {
         let path = sources.iter().find_map(|source| source.snapshots.first());
         let path = path.ok_or(PlotError::Options("no snapshot to draw"))?;
         let first = Snapshot::open(path)?;
-        let Shown::Field(field) = Shown::find(&first, &request.field)? else {
+        let Drawn::Field(field) = Drawn::find(&first, &request.field)? else {
             return Err(PlotError::Options(
                 "a profile shows a field, as in --profile pressure",
             ));
@@ -173,13 +173,13 @@ impl Line {
 
     /// The particles of a line: within half a thickness along each other axis.
     fn take(&self, snapshot: &Snapshot, field: &str, name: &str) -> Result<Taken, PlotError> {
-        let shown = Shown::find(snapshot, field)?;
+        let drawn = Drawn::find(snapshot, field)?;
         let mut dots = Vec::new();
         for rows in snapshot.chunks() {
             let points = snapshot.file.points(rows.clone())?;
             let bodies = snapshot.body_of(rows.clone())?;
-            let values = shown.values(snapshot, rows.clone())?;
-            let bearers = shown.bearers(snapshot, rows)?;
+            let values = drawn.values(snapshot, rows.clone())?;
+            let bearers = drawn.bearers(snapshot, rows)?;
             let all = points.into_iter().zip(bodies).zip(values).zip(bearers);
             for (((point, body), value), _) in all.filter(|(_, bears)| *bears) {
                 if let Some(at) = self.coordinate(&point, snapshot, body) {
@@ -196,7 +196,7 @@ impl Line {
         })
     }
 
-    /// Where a particle lies on the line, if it does.
+    /// The coordinate of a particle on the line, if it is on it.
     fn coordinate(&self, point: &[f64; 3], snapshot: &Snapshot, body: usize) -> Option<f64> {
         let from = |axis: Axis| point[axis.index()] - self.through[axis.index()];
         let along = match self.along {
@@ -219,12 +219,12 @@ impl Line {
                 .any(|plane| plane.axis == *axis && plane.position == self.through[axis.index()]);
             // One row, or the two on either side of the line; on a symmetry plane the row next
             // to it. Rows may drift by a quarter of a spacing, or half a one, before they go.
-            let usual = if on_mirror {
+            let default = if on_mirror {
                 2.0 * spacing
             } else {
                 1.5 * spacing
             };
-            let half = 0.5 * self.thickness.unwrap_or(usual);
+            let half = 0.5 * self.thickness.unwrap_or(default);
             slice(from(*axis), half, spacing)
         };
         let others = Axis::ALL.iter().filter(|axis| **axis != along);
@@ -241,19 +241,19 @@ impl Line {
             let reach = &extent[axis.index()];
             Along::Line(**axis) != self.along && reach.highest - reach.lowest > 0.0
         };
-        let place = |axis: &Axis| {
+        let position_text = |axis: &Axis| {
             let position = self.through[axis.index()];
-            slice::place(axis.name(), position, snapshot.finest())
+            slice::position_text(axis.name(), position, snapshot.finest())
         };
-        let places: Vec<String> = Axis::ALL.iter().filter(thick).map(place).collect();
+        let crossings: Vec<String> = Axis::ALL.iter().filter(thick).map(position_text).collect();
         let along = match self.along {
             Along::Line(axis) => format!("along {}", axis.name()),
             Along::Radius => "over the distance r from a point".to_owned(),
         };
-        match (&places[..], self.along) {
+        match (&crossings[..], self.along) {
             ([], _) => along,
-            (_, Along::Line(_)) => format!("{along} through {}", places.join(", ")),
-            (_, Along::Radius) => format!("{along}, {}", places.join(", ")),
+            (_, Along::Line(_)) => format!("{along} through {}", crossings.join(", ")),
+            (_, Along::Radius) => format!("{along}, {}", crossings.join(", ")),
         }
     }
 }

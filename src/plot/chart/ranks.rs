@@ -1,4 +1,4 @@
-//! How the work is spread over the ranks, step after step.
+//! The work of the ranks, step after step.
 
 use super::curves::Line;
 use super::table::Table;
@@ -8,7 +8,8 @@ use crate::colour;
 /// As many ranks, or groups of ranks, have a curve each.
 const FEW: usize = 8;
 
-/// What is drawn of more of them: which of each hundred in the order of their work, and its colour.
+/// The quantiles that are drawn of many: the rank of each hundred in the order of their work, and
+/// its colour.
 const OF_MANY: [(&str, usize, Rgb); 5] = [
     ("busiest", 100, [213, 94, 0]),
     ("upper quarter", 75, [230, 159, 0]),
@@ -27,7 +28,7 @@ struct Row {
 /// Lines of `work_over_mean` over the steps: one for each rank of few, for quantiles of many.
 ///
 /// # Errors
-/// What is wrong with the table.
+/// A message on a table that lacks a column or has a bad number.
 pub(super) fn by_rank(table: &Table, steps: &[f64]) -> Result<Vec<Line>, String> {
     let columns = ["first_rank", "last_rank", "work_over_mean"];
     let [first, last, work] = columns.map(|name| table.column(name));

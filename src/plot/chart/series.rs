@@ -1,5 +1,5 @@
-//! The series of a table: the rows of each pair of bodies, load or body, told apart by the columns
-//! that name them.
+//! The series of a table: the rows of each pair of bodies, load or body, by the columns that name
+//! them.
 
 use super::sheet::CURVE;
 use super::table::Table;
@@ -25,7 +25,7 @@ const PAIR: [&str; 2] = [KEYS[0], KEYS[1]];
 /// Some rows of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Series {
-    /// What they belong to; empty if the table has one series alone.
+    /// Their name; empty if the table has one series alone.
     pub name: String,
     /// Their places among the rows.
     pub rows: Vec<usize>,
@@ -35,7 +35,7 @@ pub struct Series {
 /// they begin; of a pair its own alone.
 ///
 /// # Errors
-/// What is wrong: the table has no pairs, or not this one.
+/// A message if the table has no pairs, or not this one.
 pub fn series(
     table: &Table,
     drawn: &[&str],
@@ -44,8 +44,8 @@ pub fn series(
     let mut keys = Vec::new();
     for name in KEYS.into_iter().chain([NUMBER]) {
         // A table of other origin may have a load in newtons.
-        let told = table.has(name) && !drawn.contains(&name);
-        let names = told && (name == NUMBER || table.column(name).is_err());
+        let present = table.has(name) && !drawn.contains(&name);
+        let names = present && (name == NUMBER || table.column(name).is_err());
         if names || (PAIR.contains(&name) && table.has(name)) {
             keys.push(table.texts(name)?);
         }
@@ -54,16 +54,16 @@ pub fn series(
         return Err("it has no pairs of bodies; contacts.csv of a run has".to_owned());
     }
     let count = table.len();
-    let mut found: Vec<Series> = Vec::new();
+    let mut known: Vec<Series> = Vec::new();
     for row in 0..count {
         let name = keys
             .iter()
             .map(|key| key[row])
             .collect::<Vec<_>>()
             .join(" – ");
-        match found.iter_mut().find(|series| series.name == name) {
+        match known.iter_mut().find(|series| series.name == name) {
             Some(series) => series.rows.push(row),
-            None => found.push(Series {
+            None => known.push(Series {
                 name,
                 rows: vec![row],
             }),
@@ -73,18 +73,18 @@ pub fn series(
         let of = |series: &Series| {
             series.name == format!("{a} – {b}") || series.name == format!("{b} – {a}")
         };
-        if !found.iter().any(of) {
-            let known: Vec<&str> = found.iter().map(|series| series.name.as_str()).collect();
+        if !known.iter().any(of) {
+            let names: Vec<&str> = known.iter().map(|series| series.name.as_str()).collect();
             return Err(format!(
                 "it has no pair {a} – {b}; it has {}",
-                known.join(", ")
+                names.join(", ")
             ));
         }
-        found.retain(of);
-    } else if let [only] = &mut found[..] {
+        known.retain(of);
+    } else if let [only] = &mut known[..] {
         only.name.clear();
     }
-    Ok(found)
+    Ok(known)
 }
 
 /// Reads `A,B`.
@@ -95,11 +95,11 @@ pub fn parse_pair(text: &str) -> Option<[String; 2]> {
     (!a.is_empty() && !b.is_empty()).then_some([a, b])
 }
 
-/// A column of numbers; where there is none of this name but three that end in `_x`, `_y` and `_z`,
+/// A column of numbers; if there is none of this name but three that end in `_x`, `_y` and `_z`,
 /// the magnitude of that vector.
 ///
 /// # Errors
-/// What is wrong, and in which line.
+/// A message with the line.
 pub fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {
     let Some(parts) = components(table, name) else {
         return table.column(name);
@@ -115,7 +115,7 @@ pub fn numbers(table: &Table, name: &str) -> Result<Vec<f64>, String> {
 /// The SI unit of such a column; empty for none.
 ///
 /// # Errors
-/// What is wrong.
+/// A message if there is no such column.
 pub fn unit(table: &Table, name: &str) -> Result<String, String> {
     let first = components(table, name).map_or(name.to_owned(), |[x, _, _]| x);
     table.unit(&first).map(str::to_owned)

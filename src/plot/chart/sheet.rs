@@ -1,4 +1,4 @@
-//! What a chart draws, as a table.
+//! A chart as a table.
 
 use super::curves::{Chart, Curve, Quantity};
 use files::output::Sheet;
@@ -12,8 +12,11 @@ impl Chart {
     /// left out.
     #[must_use]
     pub fn sheet(&self) -> Sheet {
-        let curves: Vec<&Curve> = self.told().collect();
-        let named = curves.len() > 1 || curves.iter().any(|curve| !curve.told().is_empty());
+        let curves: Vec<&Curve> = self.distinct().collect();
+        let named = curves.len() > 1
+            || curves
+                .iter()
+                .any(|curve| !curve.name_in_tables().is_empty());
         let [x, y] = [(&self.x, "x"), (&self.y, "y")].map(|(axis, other)| column(axis, other));
         let y = if x == y { format!("{y}_y") } else { y };
         let name = named.then(|| CURVE.to_owned());
@@ -27,7 +30,7 @@ impl Chart {
             .extend([&self.x, &self.y].map(|axis| axis.unit.clone()));
         for curve in curves {
             for point in &curve.points {
-                let name = named.then(|| curve.told().to_owned());
+                let name = named.then(|| curve.name_in_tables().to_owned());
                 let cells = name.into_iter().chain(point.map(cell)).collect();
                 sheet.rows.push((sheet.rows.len(), cells));
             }
@@ -36,10 +39,10 @@ impl Chart {
     }
 
     /// The curves without those that draw the points of an earlier one again.
-    fn told(&self) -> impl Iterator<Item = &Curve> {
+    fn distinct(&self) -> impl Iterator<Item = &Curve> {
         let again = move |k: usize, curve: &Curve| {
             let mut earlier = self.curves[..k].iter();
-            curve.told().is_empty() && earlier.any(|other| other.bits().eq(curve.bits()))
+            curve.name_in_tables().is_empty() && earlier.any(|other| other.bits().eq(curve.bits()))
         };
         let all = self.curves.iter().enumerate();
         let all = all.filter(|(_, curve)| !curve.points.is_empty());
@@ -49,8 +52,8 @@ impl Chart {
 }
 
 impl Curve {
-    /// What a table calls it.
-    fn told(&self) -> &str {
+    /// Its name in a table.
+    fn name_in_tables(&self) -> &str {
         if self.in_tables.is_empty() {
             &self.name
         } else {
@@ -58,8 +61,7 @@ impl Curve {
         }
     }
 
-    /// Its points, by their bits: where a line is interrupted there is no number, which no other
-    /// equals.
+    /// Its points, by their bits: a line is interrupted by NaN, which is not equal to itself.
     fn bits(&self) -> impl Iterator<Item = [u64; 2]> {
         self.points.iter().map(|point| point.map(f64::to_bits))
     }

@@ -50,7 +50,7 @@ impl Table {
             Self::read(path)?
         };
         if let Some(gauges) = only {
-            let at = table.place("gauge").map_err(failed)?;
+            let at = table.index("gauge").map_err(failed)?;
             let known =
                 |gauge: &&String| table.rows.iter().any(|(_, row)| row.get(at) == Some(gauge));
             if let Some(unknown) = gauges.iter().find(|gauge| !known(gauge)) {
@@ -64,10 +64,10 @@ impl Table {
         Ok(table)
     }
 
-    /// Takes a table apart.
+    /// Parses a table.
     ///
     /// # Errors
-    /// What is wrong, and in which line.
+    /// A message with the line.
     pub fn parse(text: &str) -> Result<Self, String> {
         let sheet = Sheet::parse(text)?.widened();
         if sheet.rows.is_empty() {
@@ -80,12 +80,12 @@ impl Table {
         Self { names, units, rows }
     }
 
-    /// The numbers of a column; an empty cell is none.
+    /// The numbers of a column; NaN for an empty cell.
     ///
     /// # Errors
-    /// What is wrong, and in which line.
+    /// A message with the line.
     pub fn column(&self, name: &str) -> Result<Vec<f64>, String> {
-        let at = self.place(name)?;
+        let at = self.index(name)?;
         let value = |(number, row): &(usize, Vec<String>)| {
             let cell = row.get(at).ok_or(format!("line {number} is cut off"))?;
             if cell.is_empty() {
@@ -101,9 +101,9 @@ impl Table {
     /// The text of a column.
     ///
     /// # Errors
-    /// What is wrong, and in which line.
+    /// A message with the line.
     pub fn texts(&self, name: &str) -> Result<Vec<&str>, String> {
-        let at = self.place(name)?;
+        let at = self.index(name)?;
         let mut texts = Vec::with_capacity(self.rows.len());
         for (number, row) in &self.rows {
             let cell = row.get(at).ok_or(format!("line {number} is cut off"))?;
@@ -117,7 +117,7 @@ impl Table {
         self.rows.len()
     }
 
-    /// Whether there is a column of this name.
+    /// `true` if there is a column of this name.
     pub fn has(&self, name: &str) -> bool {
         self.names.iter().any(|n| n == name)
     }
@@ -125,14 +125,14 @@ impl Table {
     /// The SI unit of a column; empty for none.
     ///
     /// # Errors
-    /// What is wrong.
+    /// A message if there is no such column.
     pub fn unit(&self, name: &str) -> Result<&str, String> {
-        Ok(&self.units[self.place(name)?])
+        Ok(&self.units[self.index(name)?])
     }
 
-    fn place(&self, name: &str) -> Result<usize, String> {
-        let found = self.names.iter().position(|n| n == name);
-        found.ok_or_else(|| {
+    fn index(&self, name: &str) -> Result<usize, String> {
+        let index = self.names.iter().position(|n| n == name);
+        index.ok_or_else(|| {
             let known = self.names.join(", ");
             format!("it has no column {name}; it has {known}")
         })

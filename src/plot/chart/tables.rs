@@ -10,7 +10,7 @@ use crate::colour;
 use crate::header::Mark;
 use crate::units;
 
-/// What is drawn against what.
+/// The columns of both axes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Columns {
     /// Column to the right.
@@ -73,24 +73,24 @@ impl Points {
 pub struct Tables {
     /// Title of the chart.
     pub title: String,
-    /// Names and places of the tables whose columns are curves.
+    /// Names and paths of the tables whose columns are curves.
     pub tables: Vec<(String, PathBuf)>,
-    /// What is drawn against what.
+    /// The columns of both axes.
     pub columns: Columns,
     /// The pair of bodies whose rows are drawn; all pairs if absent.
     pub pair: Option<[String; 2]>,
     /// The gauges whose rows are drawn; all if absent.
     pub gauges: Vec<String>,
-    /// What the upward axis is called, if not by its columns.
+    /// The label of the upward axis, if not that of its columns.
     pub label: Option<String>,
     /// Measured points.
     pub points: Vec<Points>,
     /// `LOW:HIGH` of the axes, right and up; all values if absent.
     pub spans: [Option<String>; 2],
-    /// Whether the axes, right and up, are logarithmic; then the rows of a table, which may be
+    /// `true` for axes, right and up, that are logarithmic; then the rows of a table, which may be
     /// few, are marked.
     pub logarithmic: [bool; 2],
-    /// Whether rows are dots, in no order, in place of curves.
+    /// `true` if rows are dots, in no order, in place of curves.
     pub dots: bool,
 }
 
@@ -148,12 +148,12 @@ impl Tables {
                 name: String::new(),
                 rows: (0..table.len()).collect(),
             };
-            let places = points(&table, &all, [&columns.x, &columns.y[0]]);
+            let points_of = points(&table, &all, [&columns.x, &columns.y[0]]);
             chart.curves.push(Curve {
                 name: words(&stem.to_string_lossy()),
                 colour: colour::body(curves + k),
                 mark: Mark::Rings,
-                points: places.map_err(|reason| wrong(&measured.path, reason))?,
+                points: points_of.map_err(|reason| wrong(&measured.path, reason))?,
                 ..Curve::default()
             });
         }
@@ -168,7 +168,7 @@ impl Tables {
             .map(String::as_str)
     }
 
-    /// What a curve is called: the parts of its name that tell it from the others.
+    /// The name of a curve: the parts that distinguish it from the others.
     fn name(&self, table: &str, series: &Series, y: &str) -> String {
         let mut parts = Vec::new();
         if self.tables.len() > 1 {

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use super::part::Part;
+use super::patch::Patch;
 use crate::PlotError;
 use crate::pixels::Pixels;
 
@@ -41,9 +41,9 @@ pub fn write(
     for picture in pictures {
         let now = picture?.rgb();
         let pixels = now.as_chunks::<3>().0;
-        let part = Part::changed(before.as_chunks().0, pixels, width);
-        let colours: Vec<u8> = part.places(width).flat_map(|k| pixels[k]).collect();
-        place(&mut writer, part).map_err(unsaved)?;
+        let patch = Patch::changed(before.as_chunks().0, pixels, width);
+        let colours: Vec<u8> = patch.indices(width).flat_map(|k| pixels[k]).collect();
+        set_region(&mut writer, patch).map_err(unsaved)?;
         writer.write_image_data(&colours).map_err(unsaved)?;
         before = now;
     }
@@ -55,14 +55,17 @@ pub fn write(
     clippy::cast_possible_truncation,
     reason = "parts of a picture whose sides fit"
 )]
-fn place(writer: &mut png::Writer<impl Write>, part: Part) -> Result<(), png::EncodingError> {
+fn set_region(
+    writer: &mut png::Writer<impl Write>,
+    patch: Patch,
+) -> Result<(), png::EncodingError> {
     // At no time may the frame reach beyond the picture.
     writer.set_frame_position(0, 0)?;
-    writer.set_frame_dimension(part.width as u32, part.height as u32)?;
-    writer.set_frame_position(part.left as u32, part.top as u32)
+    writer.set_frame_dimension(patch.width as u32, patch.height as u32)?;
+    writer.set_frame_position(patch.left as u32, patch.top as u32)
 }
 
-/// How long a picture is shown, as a fraction of seconds.
+/// The time of a picture, as a fraction of seconds.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -117,14 +120,14 @@ mod tests {
             assert_eq!(control.blend_op, png::BlendOp::Source);
             assert_eq!(control.dispose_op, png::DisposeOp::None);
             assert_eq!((control.width, control.height), (size.width, size.height));
-            let part = [control.x_offset, control.y_offset, size.width, size.height];
-            let [left, top, width, height] = part.map(|length| length as usize);
+            let patch = [control.x_offset, control.y_offset, size.width, size.height];
+            let [left, top, width, height] = patch.map(|length| length as usize);
             for row in 0..height {
                 let line = &own[3 * row * width..][..3 * width];
                 screen[3 * ((top + row) * 5 + left)..][..3 * width].copy_from_slice(line);
             }
             assert_eq!(screen, picture.rgb());
-            parts.push(part);
+            parts.push(patch);
         }
         let wanted = [
             [0, 0, 5, 4],

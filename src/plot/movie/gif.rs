@@ -11,7 +11,7 @@ use flate2::write::ZlibEncoder;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use super::palette::{Palette, Tally};
-use super::part::Part;
+use super::patch::Patch;
 use crate::PlotError;
 use crate::pixels::Pixels;
 
@@ -49,8 +49,8 @@ pub fn write(
     for packed in waiting {
         let colours = unpack(&packed).map_err(refused)?;
         let indices = palette.indices(colours.as_chunks::<3>().0);
-        let (part, own) = changed(before.as_deref(), &indices, usize::from(width));
-        let frame = frame(part, &own, delay);
+        let (patch, own) = changed(before.as_deref(), &indices, usize::from(width));
+        let frame = frame(patch, &own, delay);
         encoder.write_frame(&frame).map_err(unsaved)?;
         before = Some(indices);
     }
@@ -59,9 +59,9 @@ pub fn write(
 
 /// The part of a picture that is not as before, and its places in the palette, row by row; what is as
 /// before is [`Palette::SAME`].
-fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> (Part, Vec<u8>) {
+fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> (Patch, Vec<u8>) {
     let Some(before) = before else {
-        let whole = Part {
+        let whole = Patch {
             left: 0,
             top: 0,
             width,
@@ -69,38 +69,38 @@ fn changed(before: Option<&[u8]>, now: &[u8], width: usize) -> (Part, Vec<u8>) {
         };
         return (whole, now.to_vec());
     };
-    let part = Part::changed(before, now, width);
-    let place = |k: usize| {
+    let patch = Patch::changed(before, now, width);
+    let index = |k: usize| {
         if now[k] == before[k] {
             Palette::SAME
         } else {
             now[k]
         }
     };
-    (part, part.places(width).map(place).collect())
+    (patch, patch.indices(width).map(index).collect())
 }
 
 #[expect(
     clippy::cast_possible_truncation,
     reason = "parts of a picture whose sides fit"
 )]
-fn frame(part: Part, indices: &[u8], delay: u16) -> Frame<'_> {
+fn frame(patch: Patch, indices: &[u8], delay: u16) -> Frame<'_> {
     Frame {
         delay,
         dispose: DisposalMethod::Keep,
         transparent: Some(Palette::SAME),
         needs_user_input: false,
-        top: part.top as u16,
-        left: part.left as u16,
-        width: part.width as u16,
-        height: part.height as u16,
+        top: patch.top as u16,
+        left: patch.left as u16,
+        width: patch.width as u16,
+        height: patch.height as u16,
         interlaced: false,
         palette: None,
         buffer: Cow::Borrowed(indices),
     }
 }
 
-/// How long a picture is shown, in hundredths of a second; many viewers know nothing below two.
+/// The time of a picture, in hundredths of a second; many viewers know nothing below two.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -132,11 +132,14 @@ mod tests {
         let mut now = before;
         now[5] = 3;
         now[10] = 4;
-        let (part, indices) = changed(Some(&before), &now, 4);
-        assert_eq!((part.left, part.top, part.width, part.height), (1, 1, 2, 2));
+        let (patch, indices) = changed(Some(&before), &now, 4);
+        assert_eq!(
+            (patch.left, patch.top, patch.width, patch.height),
+            (1, 1, 2, 2)
+        );
         assert_eq!(indices, [3, Palette::SAME, Palette::SAME, 4]);
-        let (part, indices) = changed(Some(&now), &now, 4);
-        assert_eq!((part.width, part.height), (1, 1));
+        let (patch, indices) = changed(Some(&now), &now, 4);
+        assert_eq!((patch.width, patch.height), (1, 1));
         assert_eq!(indices, [Palette::SAME]);
     }
 }

@@ -3,7 +3,7 @@
 mod apng;
 mod gif;
 mod palette;
-mod part;
+mod patch;
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The colours of a GIF: exactly those of its pictures if they are few, else the frequent ones exactly
-//! and others that stand for the rest.
+//! The colours of a GIF: exactly those of its pictures if they are few, else the frequent ones
+//! exactly and others in place of the rest.
 
 use color_quant::NeuQuant;
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ const LEARNT: f64 = 300_000.0;
 /// Number of colours there can be.
 const ALL: usize = 1 << 24;
 
-/// How often each colour has been used.
+/// The number of uses of each colour.
 pub struct Tally {
     counts: Vec<u32>,
 }
@@ -51,11 +51,11 @@ impl Tally {
     }
 }
 
-/// Up to [`MOST`] colours, and which of them stands for each that is used.
+/// Up to [`MOST`] colours, and which of them replaces each that is used.
 pub struct Palette {
     colours: Vec<Rgb>,
     /// By the number of a colour.
-    places: Vec<u8>,
+    indices: Vec<u8>,
 }
 
 impl Palette {
@@ -71,12 +71,12 @@ impl Palette {
             chosen(&used)
         };
         let nearest = |(colour, _): &(Rgb, u32)| (number(*colour), nearest(&colours, *colour));
-        let found: Vec<(usize, u8)> = used.par_iter().map(nearest).collect();
-        let mut places = vec![0; ALL];
-        for (number, place) in found {
-            places[number] = place;
+        let pairs: Vec<(usize, u8)> = used.par_iter().map(nearest).collect();
+        let mut indices = vec![0; ALL];
+        for (number, index) in pairs {
+            indices[number] = index;
         }
-        Self { colours, places }
+        Self { colours, indices }
     }
 
     /// Red, green and blue of each place, of all 256.
@@ -88,12 +88,12 @@ impl Palette {
 
     /// The places of the colours of a picture that was counted.
     pub fn indices(&self, colours: &[Rgb]) -> Vec<u8> {
-        let place = |colour: &Rgb| self.places[number(*colour)];
-        colours.iter().map(place).collect()
+        let index = |colour: &Rgb| self.indices[number(*colour)];
+        colours.iter().map(index).collect()
     }
 }
 
-/// Frequent colours, and others that stand for the rest.
+/// Frequent colours, and others in place of the rest.
 fn chosen(used: &[(Rgb, u32)]) -> Vec<Rgb> {
     let total: f64 = used.iter().map(|(_, count)| f64::from(*count)).sum();
     let mut frequent = used.to_vec();
@@ -133,7 +133,7 @@ fn nearest(colours: &[Rgb], wanted: Rgb) -> u8 {
     };
     let all = colours.iter().enumerate();
     let nearest = all.min_by_key(|(_, colour)| distance(colour));
-    nearest.map_or(0, |(place, _)| place as u8)
+    nearest.map_or(0, |(index, _)| index as u8)
 }
 
 fn number([red, green, blue]: Rgb) -> usize {
@@ -178,7 +178,7 @@ mod tests {
             let parts = colour.iter().zip(taken);
             distance += parts.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
         }
-        // 254 colours over a square of 200 steps a side stand some 13 apart.
+        // 254 colours over a square of 200 steps a side are some 13 apart.
         assert!(distance / 40_000.0 < 13.0, "{}", distance / 40_000.0);
     }
 }

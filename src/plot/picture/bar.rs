@@ -11,14 +11,14 @@ use crate::units::Readable;
 /// Stretches of a bar between which its colours are those of the map.
 const STOPS: usize = 64;
 
-/// What colours of a field mean.
+/// The colour bar of a field.
 #[derive(Debug, Clone)]
 pub struct ColourBar {
     /// Range and map.
     pub scale: Scale,
     /// Unit of the numbers.
     pub unit: Readable,
-    /// What the numbers are, with unit.
+    /// The label of the numbers, with unit.
     pub label: String,
 }
 
@@ -33,7 +33,7 @@ impl ColourBar {
         Self { scale, unit, label }
     }
 
-    /// Room that a bar needs beside the panels, with numbers of usual length.
+    /// Room that a bar needs beside the panels, with numbers of typical length.
     pub fn room(style: Style) -> f32 {
         150.0 * style.unit
     }

@@ -1,4 +1,4 @@
-//! The matter that particles stand for: which body fills a place, and the field there.
+//! The bodies that particles fill, and their fields, at every point.
 //!
 //! A particle fills a cell about it of its own size s, the spacing of the volume it has now. Each
 //! has the weight
@@ -7,17 +7,17 @@
 //! w(r) = ((2 − r²/s²)/(2 − 1/4))⁴   for r < √2 s, else 0 ,
 //! ```
 //!
-//! which is one at r = s/2, and a place is filled where the weights of a body's particles add up to
+//! which is one at r = s/2, and a point is filled if the weights of a body's particles add up to
 //! one. So a lone particle is a ball of diameter s. On a cubic lattice of any dimension the power
-//! makes 2 w(s/√2) and 4 w(√3/2 s) one, too: the free surface is plane, .50 to .55 spacings
-//! outside the outermost layer, and the sum inside is two or more, without holes.
+//! makes 2 w(s/√2) and 4 w(√3/2 s) one, too: the free surface is plane, .50 to .55 spacings outside
+//! the outermost layer, and the sum inside is two or more, without holes.
 //!
-//! Bodies are told apart: the one with the largest sum fills the place, so that the line between
-//! two bodies in touch is smooth, and a gap between them is not filled by both together.
+//! Bodies are separate: the one with the largest sum fills the point, so that the line between two
+//! bodies in touch is smooth, and a gap between them is not filled by both together.
 
 use super::view::View;
 
-/// How far a particle's weight reaches, in its own sizes.
+/// Reach of a particle's weight, in its own sizes.
 pub const REACH: f64 = std::f64::consts::SQRT_2;
 
 /// A particle near a plane.
@@ -31,13 +31,13 @@ pub struct Cell {
     pub size: f64,
     /// Number of its body in the picture.
     pub body: usize,
-    /// The shown field in its own unit; rigid bodies show none.
+    /// The drawn field in its own unit; none for rigid bodies.
     pub value: Option<f64>,
 }
 
 impl Cell {
-    /// Whether it counts for what the plane shows: where it goes through the particle by itself, or
-    /// half-way between two layers, which may have come closer since their sizes were the distance.
+    /// `true` if it counts for the plane: if that cuts the particle by itself, or is half-way
+    /// between two layers, which may have come closer since their sizes were the distance.
     pub fn is_cut(&self) -> bool {
         self.depth.abs() <= 0.75 * self.size
     }
@@ -55,7 +55,7 @@ pub fn weight(distance: f64) -> f64 {
     (rest * rest) * (rest * rest)
 }
 
-/// What fills a place.
+/// The body and field at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
     /// Number of the body in the picture.
@@ -64,8 +64,7 @@ pub struct Sample {
     pub value: Option<f64>,
 }
 
-/// The cells of a part of a plane, found by place: each stands in all tiles that its weight
-/// reaches.
+/// The cells of a part of a plane, in tiles: each is in all tiles that its weight reaches.
 #[derive(Debug)]
 pub struct Tiles<'a> {
     cells: &'a [Cell],
@@ -73,15 +72,15 @@ pub struct Tiles<'a> {
     /// Edge of a tile (m).
     pitch: f64,
     columns: usize,
-    /// Where the entries of each tile begin, and the end of the last.
+    /// The first entry of each tile, and the end of the last.
     starts: Vec<u32>,
     /// Indices of cells, body by body within a tile.
     entries: Vec<u32>,
 }
 
 impl<'a> Tiles<'a> {
-    /// Sorts cells, which stand body by body, into tiles of a view; none is smaller than `finest`
-    /// (m).
+    /// Sorts cells, which are in the order of their bodies, into tiles of a view; none is smaller
+    /// than `finest` (m).
     pub fn new(cells: &'a [Cell], view: View, finest: f64) -> Self {
         let mean = cells.iter().map(|cell| cell.size).sum::<f64>() / cells.len().max(1) as f64;
         let pitch = (1.5 * mean).max(finest);
@@ -118,7 +117,7 @@ impl<'a> Tiles<'a> {
                 let last = ((at + reach - low) / self.pitch)
                     .floor()
                     .min(most as f64 - 1.0);
-                (first <= last).then(|| place(first)..=place(last))
+                (first <= last).then(|| tile(first)..=tile(last))
             };
             let xs = span(cell.at[0], self.view.x[0], self.columns);
             let ys = span(cell.at[1], self.view.y[0], rows);
@@ -133,10 +132,10 @@ impl<'a> Tiles<'a> {
         }
     }
 
-    /// What fills a place of the view, if anything does.
+    /// The sample at a point of the view, if a body fills it.
     pub fn sample(&self, at: [f64; 2]) -> Option<Sample> {
-        let column = place((at[0] - self.view.x[0]) / self.pitch).min(self.columns - 1);
-        let row = place((at[1] - self.view.y[0]) / self.pitch);
+        let column = tile((at[0] - self.view.x[0]) / self.pitch).min(self.columns - 1);
+        let row = tile((at[1] - self.view.y[0]) / self.pitch);
         let tile = (row * self.columns + column).min(self.starts.len() - 2);
         let mut entries = &self.entries[self.starts[tile] as usize..self.starts[tile + 1] as usize];
         let mut best = (1.0, None);
@@ -185,7 +184,7 @@ impl<'a> Tiles<'a> {
 
 /// A number of tiles that covers so many pitches.
 fn count(pitches: f64) -> usize {
-    place(pitches.ceil()).clamp(1, 1 << 15)
+    tile(pitches.ceil()).clamp(1, 1 << 15)
 }
 
 /// A place among tiles.
@@ -194,7 +193,7 @@ fn count(pitches: f64) -> usize {
     clippy::cast_sign_loss,
     reason = "a float cast saturates; bounds are the caller's"
 )]
-fn place(pitches: f64) -> usize {
+fn tile(pitches: f64) -> usize {
     pitches as usize
 }
 
@@ -235,7 +234,7 @@ mod tests {
         cells
     }
 
-    /// Where the surface lies along a ray to the right.
+    /// The surface along a ray to the right.
     fn surface(tiles: &Tiles, y: f64) -> f64 {
         let inside = |x: &f64| tiles.sample([*x, y]).is_some();
         (0..6000)

@@ -17,7 +17,7 @@ use crate::style::whole;
 pub struct Figure<'a> {
     /// Title of the case.
     pub title: &'a str,
-    /// What is shown, where and when.
+    /// The quantity, the section and the time.
     pub subtitle: &'a str,
     /// One for each panel.
     pub sections: &'a [Section],
@@ -27,11 +27,11 @@ pub struct Figure<'a> {
     pub headings: &'a [String],
     /// Names of the axes to the right and upwards.
     pub axes: [&'static str; 2],
-    /// How particles are drawn.
+    /// The way particles are drawn.
     pub drawn_as: DrawnAs,
-    /// What colours mean.
+    /// The meaning of colours.
     pub colours: &'a Colours,
-    /// What part of the plane is drawn.
+    /// The part of the plane that is drawn.
     pub view: View,
     /// Width of the picture (pixels).
     pub width: u32,
@@ -44,7 +44,7 @@ impl Figure<'_> {
     /// [`PlotError::Size`] if no such picture can be held.
     pub fn draw(&self) -> Result<Canvas, PlotError> {
         let (sheet, layout) = (self.sheet(), self.layout());
-        // What is too large is refused before it is drawn.
+        // Too large a picture is refused before it is drawn.
         Canvas::fits(self.width, whole(layout.height))?;
         let rasters = self.rasters(&layout);
         let seen = self.seen(&layout, &rasters);
@@ -57,14 +57,14 @@ impl Figure<'_> {
         })
     }
 
-    /// Where its parts go, from the top of the picture.
+    /// The layout of its parts, from the top of the picture.
     pub fn layout(&self) -> Layout {
         let (sheet, count) = (self.sheet(), self.sections.len());
         let (style, has_bar) = (sheet.style(count), sheet.has_bar());
         Layout::new(style, self.width, count, self.view, has_bar)
     }
 
-    /// What stands around its panels.
+    /// The surroundings of its panels.
     fn sheet(&self) -> Sheet<'_> {
         Sheet {
             title: self.title,

@@ -1,4 +1,4 @@
-//! Where the parts of a section's picture go.
+//! The layout of a section's picture.
 
 use super::bar::ColourBar;
 use super::view::View;
@@ -7,7 +7,7 @@ use crate::style::Style;
 use crate::ticks::{Ticks, nice_step};
 use crate::units::Readable;
 
-/// Where everything goes (pixels).
+/// The layout of a picture (pixels).
 #[derive(Debug)]
 pub struct Layout {
     pub style: Style,
@@ -15,7 +15,7 @@ pub struct Layout {
     pub height: f32,
     /// Panels in a row.
     pub columns: usize,
-    /// What each panel shows: at least what was asked for.
+    /// The part of the plane in each panel: at least the requested one.
     pub view: View,
     /// Unit of both axes.
     pub unit: Readable,

@@ -16,15 +16,15 @@ use crate::colour::Scale;
 use crate::file;
 use crate::sequence::Sequence;
 use crate::snapshots::bodies::Bodies;
-use crate::snapshots::field::Shown;
+use crate::snapshots::field::Drawn;
 use crate::snapshots::plane::Plane;
-use crate::snapshots::slice::{place, quantity, thickness};
+use crate::snapshots::slice::{position_text, quantity, thickness};
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
-use crate::style::usual_width;
+use crate::style::default_width;
 use model::Axis;
 
-/// What to draw, as typed.
+/// A request for pictures, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Request {
     /// `body`, a field, `FIELD.COMPONENT` or `von_mises`; bodies if absent.
@@ -35,7 +35,7 @@ pub struct Request {
     pub drawn_as: Option<String>,
     /// Thickness of the slice of particles; one spacing if absent.
     pub thickness: Option<String>,
-    /// Whether to reflect at planes of symmetry.
+    /// `true` to reflect at planes of symmetry.
     pub mirror: bool,
     /// `LOW:HIGH` of the colours; all values if absent.
     pub range: Option<String>,
@@ -50,7 +50,7 @@ pub struct Pictures {
     /// Names of the bodies by their numbers in the pictures.
     pub(super) bodies: Vec<String>,
     pub(super) cut: Cut,
-    where_text: String,
+    section_text: String,
     sections: Vec<Section>,
     colours: Colours,
     view: View,
@@ -80,9 +80,9 @@ impl Pictures {
             drawn_as: drawn_as(request)?,
             thickness,
             mirror: request.mirror,
-            shown: Shown::find(&first, request.field.as_deref().unwrap_or("body"))?,
+            drawn: Drawn::find(&first, request.field.as_deref().unwrap_or("body"))?,
         };
-        let range = cut.shown.range(request.range.as_deref())?;
+        let range = cut.drawn.range(request.range.as_deref())?;
         let view = request.view.as_deref().map(View::parse).transpose()?;
 
         let mut sections = Vec::with_capacity(paths.len());
@@ -99,8 +99,8 @@ impl Pictures {
         // As it is drawn, for tables and the legend too.
         let view = view.unwrap_or_else(|| section::view(&sections)).drawn();
         Ok(Self {
-            where_text: where_text(&cut, &first),
-            colours: colours(&cut.shown, &bodies.names, &sections, range),
+            section_text: section_text(&cut, &first),
+            colours: colours(&cut.drawn, &bodies.names, &sections, range),
             bodies: bodies.names,
             seen: (sections.len() > 1).then(|| section::bodies(&sections, &view)),
             view,
@@ -123,7 +123,7 @@ impl Pictures {
 
     /// Some sections as one figure without words.
     pub(super) fn figure_of(&self, chosen: Range<usize>, width: Option<u32>) -> Figure<'_> {
-        let width = width.unwrap_or(usual_width(chosen.len()));
+        let width = width.unwrap_or(default_width(chosen.len()));
         self.figure(chosen, "", &[], width)
     }
 
@@ -154,9 +154,9 @@ impl Sequence for Pictures {
         &self.titles
     }
 
-    /// Where the sections are taken; nothing for flat models.
-    fn place(&self) -> &str {
-        &self.where_text
+    /// The sections; nothing for flat models.
+    fn caption(&self) -> &str {
+        &self.section_text
     }
 
     fn draw(
@@ -182,14 +182,15 @@ impl Sequence for Pictures {
     }
 }
 
-/// Where a section is taken, in units that suit the positions and the particle spacing.
-fn where_text(cut: &Cut, snapshot: &Snapshot) -> String {
-    let place = |axis: Axis, position: f64| place(axis.name(), position, snapshot.finest());
+/// The position of a section, in units that suit the positions and the particle spacing.
+fn section_text(cut: &Cut, snapshot: &Snapshot) -> String {
+    let position_text =
+        |axis: Axis, position: f64| position_text(axis.name(), position, snapshot.finest());
     let length = |length: f64| quantity(length, snapshot.finest());
-    cut.caption(snapshot, place, length)
+    cut.caption(snapshot, position_text, length)
 }
 
-/// What `--as` says, and without it what `--thickness` asks for.
+/// The value of `--as`, or without it that of `--thickness`.
 fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
     match (request.drawn_as.as_deref(), &request.thickness) {
         (None | Some("cut"), None) => Ok(DrawnAs::Cut),
@@ -202,14 +203,14 @@ fn drawn_as(request: &Request) -> Result<DrawnAs, PlotError> {
 }
 
 fn colours(
-    shown: &Shown,
+    drawn: &Drawn,
     bodies: &[String],
     sections: &[Section],
     range: Option<[f64; 2]>,
 ) -> Colours {
-    match shown {
-        Shown::Body => Colours::Bodies(bodies.to_vec()),
-        Shown::Field(field) => {
+    match drawn {
+        Drawn::Body => Colours::Bodies(bodies.to_vec()),
+        Drawn::Field(field) => {
             let values = || {
                 let cells = sections.iter().flat_map(|s| &s.cells);
                 cells

@@ -33,14 +33,14 @@ struct Panel<'a, C> {
     view: View,
     /// Pixels in a row, and rows of pixels.
     size: [usize; 2],
-    /// How far an outline reaches beyond a body (samples).
+    /// Reach of an outline beyond a body (samples).
     line: usize,
     colour: C,
 }
 
 impl Raster {
-    /// Draws cells, which stand body by body, in the colours that `colour` gives, with outlines
-    /// that reach beyond bodies by `line` (pixels).
+    /// Draws cells, which are in the order of their bodies, in the colours that `colour` gives,
+    /// with outlines that reach beyond bodies by `line` (pixels).
     pub fn new(
         cells: &[Cell],
         view: View,
@@ -146,7 +146,7 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
         sample.map_or(PAPER, |sample| (self.colour)(&sample))
     }
 
-    /// What is at a fine sample, counted from the upper left corner.
+    /// The sample at a fine sample, counted from the upper left corner.
     fn sample(&self, x: usize, y: usize) -> Option<Sample> {
         let share = |k: usize, count: usize| (k as f64 + 0.5) / (FINE * count) as f64;
         self.tiles.sample([

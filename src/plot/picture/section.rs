@@ -1,4 +1,4 @@
-//! Which particles a plane cuts, and where they lie in it.
+//! The particles that a plane cuts, and their positions in it.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::cells::{Cell, REACH};
 use super::view::View;
 use crate::PlotError;
-use crate::snapshots::field::Shown;
+use crate::snapshots::field::Drawn;
 use crate::snapshots::images::{Image, Mirrors};
 use crate::snapshots::plane::Plane;
 use crate::snapshots::slice::{NUDGE, mirrored, slice};
@@ -14,16 +14,16 @@ use crate::snapshots::snapshot::{LARGEST, Snapshot};
 use crate::units::Readable;
 use model::{Axis, SymmetryPlane};
 
-/// How the particles of a section are drawn.
+/// The way the particles of a section are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DrawnAs {
-    /// As the matter that they stand for, cut by the plane.
+    /// As the cells that they fill, cut by the plane.
     Cut,
     /// As discs of the particle spacing: all that lie in a slice about the plane.
     Particles,
 }
 
-/// What a plane shows of one snapshot.
+/// The section of one snapshot.
 #[derive(Debug, Clone)]
 pub struct Section {
     /// Time of the snapshot (s).
@@ -33,20 +33,20 @@ pub struct Section {
     pub cells: Vec<Cell>,
 }
 
-/// How a section is taken.
+/// The definition of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cut {
     /// The plane.
     pub plane: Plane,
-    /// What becomes of the particles.
+    /// The way particles are drawn.
     pub drawn_as: DrawnAs,
     /// Thickness of the slice (m); if absent the spacing of each body, or twice that on a symmetry
     /// plane, where the layer next to it and its image are the same.
     pub thickness: Option<f64>,
-    /// Whether to reflect the model at its planes of symmetry.
+    /// `true` to reflect the model at its planes of symmetry.
     pub mirror: bool,
-    /// What is shown.
-    pub shown: Shown,
+    /// The drawn quantity.
+    pub drawn: Drawn,
 }
 
 impl Cut {
@@ -59,7 +59,7 @@ impl Cut {
     /// when the material expands.
     pub fn take(&self, snapshot: &Snapshot, names: &[usize]) -> Result<Section, PlotError> {
         let planes = self.mirrors(snapshot);
-        let mirrors = Mirrors::new(planes.clone(), &self.shown);
+        let mirrors = Mirrors::new(planes.clone(), &self.drawn);
         let coarsest = snapshot.coarsest();
         let reach = match self.drawn_as {
             DrawnAs::Cut => REACH * LARGEST * coarsest,
@@ -79,8 +79,8 @@ impl Cut {
                 DrawnAs::Cut => snapshot.sizes(rows.clone(), &bodies)?,
                 DrawnAs::Particles => snapshot.first_sizes(rows.clone(), &bodies)?,
             };
-            let values = self.shown.values(snapshot, rows.clone())?;
-            let bearers = self.shown.bearers(snapshot, rows)?;
+            let values = self.drawn.values(snapshot, rows.clone())?;
+            let bearers = self.drawn.bearers(snapshot, rows)?;
             let all = points[near]
                 .iter()
                 .zip(bodies)
@@ -96,7 +96,7 @@ impl Cut {
                 let cell = |image: &Image| {
                     let at = self.flatten(&image.point, half, size)?;
                     let value = if image.flipped { -value } else { value };
-                    let bears = self.shown != Shown::Body && !snapshot.rigid[body];
+                    let bears = self.drawn != Drawn::Body && !snapshot.rigid[body];
                     Some(Cell {
                         at: [at[0], at[1]],
                         depth: at[2],
@@ -143,8 +143,8 @@ impl Cut {
         first..end
     }
 
-    /// The planes of symmetry that images stand behind: all of them; without mirror images only one
-    /// that is the plane of the section, where half of the matter about it is not in the model.
+    /// The planes of symmetry with images: all of them; without mirror images only one that is the
+    /// plane of the section, where half of the particles about it are not in the model.
     fn mirrors(&self, snapshot: &Snapshot) -> Vec<SymmetryPlane> {
         let planes = snapshot.symmetry.iter().copied();
         planes
@@ -152,7 +152,7 @@ impl Cut {
             .collect()
     }
 
-    /// Whether the section is taken at a plane of symmetry.
+    /// `true` if the section is at a plane of symmetry.
     fn is_on(&self, mirror: &SymmetryPlane, spacing: f64) -> bool {
         mirror.axis == self.plane.axis
             && (mirror.position - self.plane.position).abs() < NUDGE * spacing
@@ -196,15 +196,15 @@ impl Cut {
         }
     }
 
-    /// Where the section is taken: `"section y = 0, mirrored at x = 0"`; a flat model has none.
-    /// `place` writes a position on an axis, `length` a length.
+    /// The position of the section: `"section y = 0, mirrored at x = 0"`; a flat model has none.
+    /// `position_text` writes a position on an axis, `length` a length.
     pub fn caption(
         &self,
         snapshot: &Snapshot,
-        place: impl Fn(Axis, f64) -> String,
+        position_text: impl Fn(Axis, f64) -> String,
         length: impl Fn(f64) -> String,
     ) -> String {
-        let at = place(self.plane.axis, self.plane.position);
+        let at = position_text(self.plane.axis, self.plane.position);
         let section = match (self.drawn_as, self.thickness) {
             (DrawnAs::Cut, _) => format!("section {at}"),
             (DrawnAs::Particles, None) => format!("one layer of particles about {at}"),
@@ -215,7 +215,7 @@ impl Cut {
         let seen = |p: &&SymmetryPlane| self.mirror && p.axis != self.plane.axis;
         let planes = snapshot.symmetry.iter().filter(seen);
         let section = (snapshot.dimension == 3).then_some(section);
-        let mirrored = mirrored(planes.map(|p| place(p.axis, p.position)));
+        let mirrored = mirrored(planes.map(|p| position_text(p.axis, p.position)));
         let texts: Vec<String> = section.into_iter().chain(mirrored).collect();
         texts.join(",  ")
     }
@@ -241,8 +241,8 @@ pub fn view(sections: &[Section]) -> View {
 /// Numbers of the bodies that a view of some sections shows, in ascending order.
 pub fn bodies(sections: &[Section], view: &View) -> Vec<usize> {
     let cells = sections.iter().flat_map(|s| &s.cells);
-    let shown = cells.filter(|c| c.is_cut() && view.shows(c.at, 0.5 * c.size));
-    let bodies: BTreeSet<usize> = shown.map(|cell| cell.body).collect();
+    let visible = cells.filter(|c| c.is_cut() && view.shows(c.at, 0.5 * c.size));
+    let bodies: BTreeSet<usize> = visible.map(|cell| cell.body).collect();
     bodies.into_iter().collect()
 }
 
@@ -259,7 +259,7 @@ mod tests {
             drawn_as: DrawnAs::Particles,
             thickness: None,
             mirror,
-            shown: Shown::Body,
+            drawn: Drawn::Body,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::colour;
 use crate::header::{Entry, Header, Mark};
 use crate::style::{Style, whole};
 
-/// What colours mean.
+/// The meaning of colours.
 #[derive(Debug, Clone)]
 pub enum Colours {
     /// Bodies, by their names.
@@ -18,16 +18,16 @@ pub enum Colours {
     Bar(ColourBar),
 }
 
-/// What stands around the panels of a picture.
+/// The surroundings of the panels of a picture.
 #[derive(Debug)]
 pub struct Sheet<'a> {
     /// Title of the case.
     pub title: &'a str,
-    /// What is shown, where and when.
+    /// The quantity, the section and the time.
     pub subtitle: &'a str,
     /// Names above the panels; used if there are several.
     pub headings: &'a [String],
-    /// What colours mean.
+    /// The meaning of colours.
     pub colours: &'a Colours,
     /// Width of the picture (pixels).
     pub width: u32,
@@ -39,7 +39,7 @@ impl Sheet<'_> {
         Style::of(self.width, panels)
     }
 
-    /// Whether there is a colour bar.
+    /// `true` if there is a colour bar.
     pub fn has_bar(&self) -> bool {
         matches!(self.colours, Colours::Bar(_))
     }

@@ -1,4 +1,4 @@
-//! What a section draws, as a table: a grid of what fills its places, or its particles.
+//! A section as a table: a grid of its points, or its particles.
 
 use std::io::{self, Write};
 use std::ops::Range;
@@ -10,7 +10,7 @@ use super::figure::Figure;
 use super::pictures::Pictures;
 use super::section::{DrawnAs, Section};
 use super::view::View;
-use crate::snapshots::field::Shown;
+use crate::snapshots::field::Drawn;
 use files::output::{Sheet, table_line};
 use model::Axis;
 
@@ -21,9 +21,9 @@ const BAND: usize = 64;
 type Row = ([f64; 2], Sample);
 
 impl Pictures {
-    /// Puts the table of some snapshots, by their places among the paths, as a picture of them of a
-    /// width in pixels shows them: of a cut a row for each pixel with matter, at its middle; of a slice
-    /// one for each particle. Time, run, place, body and field, in SI units.
+    /// Writes the table of some snapshots, by their indices among the paths, as a picture of a
+    /// width in pixels draws them: for a cut a row for each pixel in a body, at its middle; for a
+    /// slice one for each particle. Time, run, position, body and field, in SI units.
     ///
     /// # Errors
     /// Those of the system.
@@ -66,7 +66,7 @@ impl Pictures {
     }
 
     fn has_field(&self) -> bool {
-        matches!(self.cut.shown, Shown::Field(_))
+        matches!(self.cut.drawn, Drawn::Field(_))
     }
 
     /// The table without rows.
@@ -76,9 +76,9 @@ impl Pictures {
         if self.titles.names.is_some() {
             columns.insert(1, ("run", ""));
         }
-        let field = match &self.cut.shown {
-            Shown::Field(field) => Some((field.label.replace(' ', "_"), field.unit.clone())),
-            Shown::Body => None,
+        let field = match &self.cut.drawn {
+            Drawn::Field(field) => Some((field.label.replace(' ', "_"), field.unit.clone())),
+            Drawn::Body => None,
         };
         let columns = columns
             .into_iter()
@@ -92,7 +92,7 @@ impl Pictures {
     }
 }
 
-/// What fills the middles of the pixels of a panel, some rows of them at a time, from the top.
+/// The samples at the middles of the pixels of a panel, some rows of them at a time, from the top.
 fn grid(
     figure: &Figure,
     section: &Section,
@@ -106,15 +106,15 @@ fn grid(
     let share = |k: usize, count: usize| (k as f64 + 0.5) / count as f64;
     let of_row = |row: usize| -> Vec<Row> {
         let y = view.y[1] - view.height() * share(row, rows);
-        let places = (0..columns).map(|k| [view.x[0] + view.width() * share(k, columns), y]);
-        places
+        let middles = (0..columns).map(|k| [view.x[0] + view.width() * share(k, columns), y]);
+        middles
             .filter_map(|at| Some((at, tiles.sample(at)?)))
             .collect()
     };
     for first in (0..rows).step_by(BAND) {
         let band = first..rows.min(first + BAND);
-        let found: Vec<Vec<Row>> = band.into_par_iter().map(of_row).collect();
-        write(&found.concat())?;
+        let rows_of: Vec<Vec<Row>> = band.into_par_iter().map(of_row).collect();
+        write(&rows_of.concat())?;
     }
     Ok(())
 }

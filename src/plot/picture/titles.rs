@@ -1,4 +1,4 @@
-//! What pictures of the snapshots of some runs say of themselves.
+//! Titles of pictures of the snapshots of some runs.
 
 use crate::snapshots::source::Source;
 use crate::units;
@@ -32,16 +32,16 @@ impl Titles {
         self.times.len()
     }
 
-    /// What stands below the title of a picture of one snapshot; `place` says what is shown of it.
-    pub fn subtitle(&self, index: usize, place: &str) -> String {
+    /// The text below the title of a picture of one snapshot; `caption` describes the picture.
+    pub fn subtitle(&self, index: usize, caption: &str) -> String {
         let time = &self.times[index];
-        match place {
+        match caption {
             "" => format!("t = {time}"),
-            place => format!("t = {time},  {place}"),
+            caption => format!("t = {time},  {caption}"),
         }
     }
 
-    /// What stands above the panels of a picture of all snapshots.
+    /// The headings of the panels of a picture of all snapshots.
     pub fn headings(&self) -> Vec<String> {
         let heading = |(k, time): (usize, &String)| match &self.names {
             Some(names) => format!("{}, t = {time}", names[k]),

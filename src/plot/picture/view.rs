@@ -1,4 +1,4 @@
-//! What part of its plane a picture shows.
+//! The part of its plane that a picture shows.
 
 use crate::PlotError;
 use crate::units::{self, Readable};
@@ -35,7 +35,7 @@ impl View {
         })
     }
 
-    /// Whether a disc reaches into it.
+    /// `true` if a disc reaches into it.
     pub fn shows(&self, at: [f64; 2], radius: f64) -> bool {
         let within = |at: f64, span: [f64; 2]| at + radius > span[0] && at - radius < span[1];
         within(at[0], self.x) && within(at[1], self.y)
@@ -53,7 +53,7 @@ impl View {
     pub fn drawn(self) -> Self {
         let grow = |span: [f64; 2], least: f64| {
             let lack = least - (span[1] - span[0]);
-            // What has been widened is not widened again by what rounding has left.
+            // A view that has been widened is not widened again by the rest of rounding.
             if lack <= ROUNDING * least {
                 return span;
             }

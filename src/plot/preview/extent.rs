@@ -1,4 +1,4 @@
-//! What of space pictures of a model show, and the plane of its section.
+//! The part of space in pictures of a model, and the plane of its section.
 
 use crate::snapshots::plane::Plane;
 use model::{Axis, Body, Case, RigidSurface, SurfaceShape};
@@ -7,7 +7,7 @@ use populate;
 /// Blank border about the model, over its longest side.
 const BORDER: f64 = 0.06;
 
-/// A rigid surface is shown whole if it reaches beyond the bodies by no more than this, over their
+/// A rigid surface is drawn whole if it reaches beyond the bodies by no more than this, over their
 /// longest side.
 const NEAR: f64 = 1.0;
 
@@ -22,8 +22,8 @@ pub fn of_body(body: &Body, case: &Case) -> Option<Ends> {
     Some((lower.map(|x| x - half), upper.map(|x| x + half)))
 }
 
-/// The box around all bodies (m), and what is shown of space; nothing without particles.
-pub fn shown(case: &Case) -> Option<[Ends; 2]> {
+/// The box around all bodies (m), and the visible one; nothing without particles.
+pub fn extents(case: &Case) -> Option<[Ends; 2]> {
     let boxes = case.bodies.iter().filter_map(|body| of_body(body, case));
     let all = boxes.reduce(|all, one| join(&all, &one))?;
     let longest = longest(&all);
@@ -35,14 +35,15 @@ pub fn shown(case: &Case) -> Option<[Ends; 2]> {
     });
     let with_surfaces = near.fold(all, |all, one| join(&all, &one));
     let border = BORDER * self::longest(&with_surfaces);
-    let mut shown = grown(&with_surfaces, border);
+    let mut visible = grown(&with_surfaces, border);
     for axis in case.dimension..3 {
-        (shown.0[axis], shown.1[axis]) = (all.0[axis] - border, all.1[axis] + border);
+        (visible.0[axis], visible.1[axis]) = (all.0[axis] - border, all.1[axis] + border);
     }
-    Some([all, shown])
+    Some([all, visible])
 }
 
-/// The box of a surface (m); of a plane normal to an axis where it stands, as wide as the bodies are.
+/// The box of a surface (m); of a plane normal to an axis at its position, as wide as the bodies
+/// are.
 fn bounds_of(surface: &RigidSurface, bodies: &Ends) -> Ends {
     let SurfaceShape::Plane { normal, position } = &surface.shape else {
         return surface.bounds();

@@ -1,4 +1,4 @@
-//! What is nearest to the viewer at each pixel of a panel, particle by particle.
+//! The nearest particle to the viewer at each pixel of a panel.
 
 use super::panel::Panel;
 use crate::canvas::{PAPER, Rgb};
@@ -63,12 +63,12 @@ impl Image {
     }
 
     /// Adds a particle at a place (m) as a ball of a size (m).
-    pub fn add(&mut self, place: &[f64; 3], size: f64, body: usize) {
+    pub fn add(&mut self, point: &[f64; 3], size: f64, body: usize) {
         let [right, up] = self.panel.axes();
         let (view, scale) = (&self.panel.view, self.panel.scale());
-        let x = (place[right] - view.x[0]) * scale;
-        let y = (view.y[1] - place[up]) * scale;
-        let depth = -self.panel.towards() * place[self.panel.plane.axis.index()];
+        let x = (point[right] - view.x[0]) * scale;
+        let y = (view.y[1] - point[up]) * scale;
+        let depth = -self.panel.towards() * point[self.panel.plane.axis.index()];
         let radius = 0.5 * size * scale;
         let small = radius < SMALL;
         let reach = if small {
@@ -152,7 +152,7 @@ impl Image {
         colours
     }
 
-    /// Whether a body, or what is near, ends at a pixel.
+    /// `true` if a body, or its near side, ends at a pixel.
     fn is_edge(&self, row: usize, column: usize, step: f64) -> bool {
         let own = &self.hits[row * self.columns + column];
         let beside = [
@@ -244,10 +244,10 @@ mod tests {
     fn what_is_nearer_hides_what_is_behind() {
         for (axis, nearer) in [(Axis::X, 1), (Axis::Y, 0), (Axis::Z, 1)] {
             let mut image = image(axis);
-            let mut place = [5.0; 3];
+            let mut point = [5.0; 3];
             for (body, along) in [(0, 2.0), (1, 8.0)] {
-                place[axis.index()] = along;
-                image.add(&place, 1.0, body);
+                point[axis.index()] = along;
+                image.add(&point, 1.0, body);
             }
             let mut seen: Vec<usize> = image.bodies().collect();
             seen.dedup();

@@ -26,19 +26,13 @@ const DASHES: &[f32] = &[7.0, 5.0];
 const DASHES_AND_DOTS: &[f32] = &[14.0, 5.0, 2.0, 5.0];
 
 /// A line across the frame where a coordinate of one axis has a value (m), if it is in the view.
-fn across(
-    canvas: &mut Canvas,
-    style: Style,
-    panel: &Panel,
-    (axis, value): (usize, f64),
-    colour: Rgb,
-) {
+fn across(canvas: &mut Canvas, style: Style, panel: &Panel, axis: usize, value: f64, colour: Rgb) {
     let [right, up] = panel.axes();
     let (frame, view) = (&panel.frame, &panel.view);
     let within = |span: [f64; 2]| span[0] <= value && value <= span[1];
-    let mut place = [0.0; 3];
-    place[axis] = value;
-    let (x, y) = panel.at(&place);
+    let mut point = [0.0; 3];
+    point[axis] = value;
+    let (x, y) = panel.at(&point);
     let ends = if axis == right && within(view.x) {
         [(x, frame.top), (x, frame.bottom())]
     } else if axis == up && within(view.y) {
@@ -62,7 +56,8 @@ pub fn symmetry(canvas: &mut Canvas, style: Style, panel: &Panel, planes: &[Symm
             canvas,
             style,
             panel,
-            (plane.axis.index(), plane.position),
+            plane.axis.index(),
+            plane.position,
             SYMMETRY,
         );
     }
@@ -75,7 +70,7 @@ pub fn keep(canvas: &mut Canvas, style: Style, panel: &Panel, keep: Option<&Regi
             .iter()
             .flat_map(|keep| [keep.above[axis], keep.below[axis]])
         {
-            across(canvas, style, panel, (axis, side), KEEP);
+            across(canvas, style, panel, axis, side, KEEP);
         }
     }
 }
@@ -111,8 +106,8 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
     let longest = LONGEST * panel.frame.width.min(panel.frame.height);
     let [right, up] = panel.axes();
     let normal = panel.plane.axis.index();
-    for (_, place, v) in all {
-        let at = panel.at(place);
+    for (_, point, v) in all {
+        let at = panel.at(point);
         let share = |a: usize| pixels(v[a] / fastest) * longest;
         let (dx, dy) = (share(right), -share(up));
         if dx.hypot(dy) < 0.05 * longest {
@@ -126,7 +121,7 @@ pub fn arrows(canvas: &mut Canvas, style: Style, panel: &Panel, all: &[Flight], 
             // Not over its arrow.
             let leftwards = dx > dy.abs();
             let text = shown(norm(v), "m/s");
-            label(canvas, style, at, (&text, leftwards), &panel.frame);
+            label(canvas, style, at, &text, leftwards, &panel.frame);
         }
     }
 }
@@ -156,7 +151,8 @@ fn label(
     canvas: &mut Canvas,
     style: Style,
     at: (f32, f32),
-    (text, leftwards): (&str, bool),
+    text: &str,
+    leftwards: bool,
     frame: &Frame,
 ) {
     let size = style.small();

@@ -14,7 +14,7 @@ use crate::length_bar;
 use crate::picture::layout::pixels;
 use crate::picture::view::View;
 use crate::snapshots::plane::Plane;
-use crate::snapshots::slice::place;
+use crate::snapshots::slice::position_text;
 use crate::style::{Style, WIDTH, whole};
 use crate::ticks::{Ticks, nice_step};
 use crate::units::Readable;
@@ -53,7 +53,7 @@ pub fn preview(
     section: Option<&str>,
     width: Option<u32>,
 ) -> Result<Canvas, PlotError> {
-    let Some([model, shown]) = extent::shown(case) else {
+    let Some([model, visible]) = extent::extents(case) else {
         return Err(PlotError::Options("the case has no particles to draw"));
     };
     let plane = match section {
@@ -77,21 +77,21 @@ pub fn preview(
         legend: legend(case),
     };
     let top = header.draw(None, style, width as f32);
-    let page = Page::new(case, style, [model, shown], plane, (width as f32, top));
+    let page = Page::new(case, style, [model, visible], plane, width as f32, top);
     let mut canvas = Canvas::new(width, whole(page.height))?;
     header.draw(Some(&mut canvas), style, width as f32);
     page.draw(&mut canvas, particles as f64)?;
     Ok(canvas)
 }
 
-/// How many particles there are, and where the section is.
+/// The number of particles, and the position of the section.
 fn subtitle(case: &Case, plane: Plane, particles: u64) -> String {
     let finest = case.bodies.iter().map(|body| body.lattice.spacing);
     let finest = finest.fold(f64::INFINITY, f64::min);
     let section = match case.dimension {
         3 => format!(
             ",  section {}",
-            place(plane.axis.name(), plane.position, finest)
+            position_text(plane.axis.name(), plane.position, finest)
         ),
         _ => String::new(),
     };
@@ -123,11 +123,12 @@ impl<'a> Page<'a> {
     fn new(
         case: &'a Case,
         style: Style,
-        [model, shown]: [Ends; 2],
+        [model, visible]: [Ends; 2],
         plane: Plane,
-        (width, top): (f32, f32),
+        width: f32,
+        top: f32,
     ) -> Self {
-        let view = Panel::view_of(plane.axis, &shown);
+        let view = Panel::view_of(plane.axis, &visible);
         let unit = Readable::new("m", view.reach());
         // The numbers beside the section are known once the scale is.
         let room = width - 130.0 * style.unit - 2.0 * style.margin();
@@ -162,16 +163,16 @@ impl<'a> Page<'a> {
             height: section.frame.bottom() + style.below() + 0.5 * style.margin(),
         };
         if case.dimension == 3 {
-            page.lay_views(&shown, width);
+            page.lay_views(&visible, width);
         }
         page
     }
 
     /// Three views of one scale side by side below the section.
-    fn lay_views(&mut self, shown: &Ends, width: f32) {
+    fn lay_views(&mut self, visible: &Ends, width: f32) {
         let style = self.style;
         let axes = [Axis::Y, Axis::X, Axis::Z];
-        let views = axes.map(|axis| Panel::view_of(axis, shown));
+        let views = axes.map(|axis| Panel::view_of(axis, visible));
         let across: f64 = views.iter().map(View::width).sum();
         let highest = views.iter().map(View::height).fold(0.0, f64::max);
         let room = width - 2.0 * style.margin() - 2.0 * style.between();
@@ -256,7 +257,7 @@ impl<'a> Page<'a> {
     ) {
         let spacings = self.case.bodies.iter().map(|body| body.lattice.coarsest());
         let coarsest = spacings.fold(0.0, f64::max);
-        // What is smooth has no lines, however steep it is seen.
+        // Smooth surfaces have no lines, however steep they are seen.
         let step = (2.5 * coarsest).max(STEEP / panel.scale());
         let mut colours = image.colours(step);
         for &(column, row) in dots {

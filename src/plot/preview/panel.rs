@@ -11,9 +11,9 @@ use model::Axis;
 pub struct Panel {
     /// The axis that is looked along, and where a section is.
     pub plane: Plane,
-    /// What is shown of the other two (m).
+    /// The visible part of the other two (m).
     pub view: View,
-    /// Where it is in the picture (whole pixels).
+    /// Its frame in the picture (whole pixels).
     pub frame: Frame,
 }
 
@@ -23,8 +23,8 @@ impl Panel {
         self.plane.picture_axes().map(Axis::index)
     }
 
-    /// What comes nearer to the viewer along the normal: 1 if growing coordinates do, else −1. The
-    /// three axes are right-handed, right and up those of the picture.
+    /// The direction to the viewer along the normal: 1 for growing coordinates, else −1. The three
+    /// axes are right-handed, right and up those of the picture.
     pub fn towards(&self) -> f64 {
         if self.plane.axis == Axis::Y {
             -1.0
@@ -34,25 +34,25 @@ impl Panel {
     }
 
     /// The pixel of a place (m).
-    pub fn at(&self, place: &[f64; 3]) -> (f32, f32) {
+    pub fn at(&self, point: &[f64; 3]) -> (f32, f32) {
         let [right, up] = self.axes();
         let axes = Axes {
             frame: self.frame,
             x: self.view.x,
             y: self.view.y,
         };
-        axes.at(place[right], place[up])
+        axes.at(point[right], point[up])
     }
 
     /// The place (m) of a pixel of the frame, counted from its upper left corner, at a coordinate
     /// (m) along the normal.
-    pub fn place(&self, x: f64, y: f64, along: f64) -> [f64; 3] {
+    pub fn point(&self, x: f64, y: f64, along: f64) -> [f64; 3] {
         let [right, up] = self.axes();
-        let mut place = [0.0; 3];
-        place[self.plane.axis.index()] = along;
-        place[right] = self.view.x[0] + x / self.scale();
-        place[up] = self.view.y[1] - y / self.scale();
-        place
+        let mut point = [0.0; 3];
+        point[self.plane.axis.index()] = along;
+        point[right] = self.view.x[0] + x / self.scale();
+        point[up] = self.view.y[1] - y / self.scale();
+        point
     }
 
     /// Pixels in a metre.
@@ -60,7 +60,7 @@ impl Panel {
         f64::from(self.frame.width) / self.view.width()
     }
 
-    /// What is seen of a box (m) along an axis.
+    /// The view of a box (m) along an axis.
     pub fn view_of(axis: Axis, (lower, upper): &([f64; 3], [f64; 3])) -> View {
         let plane = Plane {
             axis,

@@ -44,7 +44,7 @@ impl Layers {
         let every = (particles / MOST).ceil().max(1.0) as u64;
         let mut spacing = body.lattice.spacing;
         if every == 1 && populate::moves_sites(body) {
-            // What is fitted costs as much for all that is beside a layer.
+            // A fitted slab costs as much for all particles beside a layer.
             spacing = THICK * body.lattice.coarsest();
         }
         Some(Self {
@@ -68,8 +68,8 @@ impl Layers {
     }
 }
 
-/// Draws some slabs of bodies on panels, of which particles of a size (m) are shown as `shows` says;
-/// where layers are left out, particles are as much larger.
+/// Draws some slabs of bodies on panels, with particles of a size (m) that `shows` chooses; if
+/// layers are left out, particles are as much larger.
 fn draw(
     case: &Case,
     panels: &[Panel],
@@ -124,8 +124,8 @@ pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
     draw(case, panels, &slabs, every as f64, |_, _, _| true)
 }
 
-/// Half the thickness of a section (spacings): particles of a file need not stand in layers, and
-/// what has been stretched has gaps.
+/// Half the thickness of a section (spacings): particles of a file need not be in layers, and a
+/// stretched body has gaps.
 fn half_thickness(body: &Body) -> f64 {
     if body.cloud().is_some() { 0.75 } else { 0.5 }
 }
@@ -147,7 +147,7 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
     };
     let bodies = case.bodies.iter().enumerate();
     let slabs: Vec<_> = bodies.map(|(index, body)| (index, slab(body))).collect();
-    // What is finer than the coarsest is in the section only if it is as near.
+    // Particles finer than the coarsest are in the section only if they are as near.
     let (plane, widest) = (panel.plane.position, 1.0 + 1e-6);
     let mirrors = || case.symmetry.iter().filter(|m| m.axis == panel.plane.axis);
     let is_in = |body: &Body, x: &[f64; 3], size: f64| {

@@ -14,7 +14,7 @@ const STROKES: usize = 6;
 /// Steps along a ray at most.
 const MOST_STEPS: usize = 200;
 
-/// What of a panel a surface may be seen in.
+/// The part of a panel in which a surface may be seen.
 struct Reach {
     axes: [usize; 2],
     lower: [f64; 3],
@@ -32,15 +32,15 @@ impl Reach {
         }
     }
 
-    fn has(&self, place: &[f64; 3]) -> bool {
-        let within = |a: usize| self.lower[a] <= place[a] && place[a] <= self.upper[a];
+    fn has(&self, point: &[f64; 3]) -> bool {
+        let within = |a: usize| self.lower[a] <= point[a] && point[a] <= self.upper[a];
         self.axes.into_iter().all(within)
     }
 }
 
 /// Distance (m) from the surface, whichever side.
-fn distance(surface: &RigidSurface, place: &[f64; 3]) -> f64 {
-    let foot = surface.foot(place, f64::INFINITY);
+fn distance(surface: &RigidSurface, point: &[f64; 3]) -> f64 {
+    let foot = surface.foot(point, f64::INFINITY);
     foot.map_or(f64::INFINITY, |foot| foot.gap.abs())
 }
 
@@ -51,8 +51,8 @@ fn rows(panel: &Panel, work: impl Fn(usize, usize) -> bool + Sync) -> Vec<(usize
         let columns = (0..columns).filter(|&column| work(column, row));
         columns.map(|column| (column, row)).collect::<Vec<_>>()
     };
-    let found: Vec<Vec<_>> = (0..rows).into_par_iter().map(of_row).collect();
-    found.concat()
+    let samples: Vec<Vec<_>> = (0..rows).into_par_iter().map(of_row).collect();
+    samples.concat()
 }
 
 /// The middle of a pixel.
@@ -66,11 +66,11 @@ pub fn cut(surface: &RigidSurface, panel: &Panel, line: f32) -> Vec<(usize, usiz
     let half = 0.5 * f64::from(line);
     let reach = Reach::of(surface, panel, HATCH / panel.scale());
     rows(panel, |column, row| {
-        let place = panel.place(middle(column), middle(row), panel.plane.position);
-        if !reach.has(&place) {
+        let point = panel.point(middle(column), middle(row), panel.plane.position);
+        if !reach.has(&point) {
             return false;
         }
-        let Some(foot) = surface.foot(&place, f64::INFINITY) else {
+        let Some(foot) = surface.foot(&point, f64::INFINITY) else {
             return false;
         };
         // As it is seen in the plane, to which the surface may be inclined.
@@ -85,8 +85,9 @@ pub fn cut(surface: &RigidSurface, panel: &Panel, line: f32) -> Vec<(usize, usiz
     })
 }
 
-/// Whether a ray, which is `at` a place for each coordinate along it, comes as near to a surface as
-/// `least` (m) between two coordinates (m): it goes as far as the surface is away, again and again.
+/// `true` if a ray, which is `at` a point for each coordinate along it, comes as near to a surface
+/// as `least` (m) between two coordinates (m): it goes as far as the surface is away, again and
+/// again.
 fn is_met(
     surface: &RigidSurface,
     at: impl Fn(f64) -> [f64; 3],
@@ -126,7 +127,7 @@ pub fn seen(surface: &RigidSurface, panel: &Panel, particles: &Ends) -> Vec<(usi
     let high = end(upper[a] + pixel, particles.1[a]);
     let reach = Reach::of(surface, panel, pixel);
     let hits = |column: usize, row: usize| {
-        let at = |along: f64| panel.place(middle(column), middle(row), along);
+        let at = |along: f64| panel.point(middle(column), middle(row), along);
         reach.has(&at(low)) && is_met(surface, at, [low, high], pixel)
     };
     let [columns, height] = panel.frame.pixels();

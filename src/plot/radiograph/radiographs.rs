@@ -19,8 +19,8 @@ use crate::scene::cut::Cuts;
 use crate::scene::survey::{Numbered, Survey};
 use crate::sequence::Sequence;
 use crate::snapshots::bodies::Bodies;
-use crate::snapshots::field::Shown;
-use crate::snapshots::matter::{Grain, PORTION, Wanted};
+use crate::snapshots::field::Drawn;
+use crate::snapshots::grains::{Grain, PORTION, Selection};
 use crate::snapshots::plane::Plane;
 use crate::snapshots::sample::Sampled;
 use crate::snapshots::snapshot::Snapshot;
@@ -29,13 +29,13 @@ use crate::style::{Style, whole};
 use crate::units::parse_span;
 use model::Axis;
 
-/// Unit of what is shown.
+/// Unit of the drawn quantity.
 const UNIT: &str = "kg/m^2";
 
-/// What is said of a flat model.
+/// The message for a flat model.
 const FLAT: &str = "a radiograph needs a model of three dimensions: this one has no depth";
 
-/// What to draw, as typed.
+/// A request for radiographs, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RadiographRequest {
     /// Line of sight: `x`, `y` or `z`.
@@ -44,7 +44,7 @@ pub struct RadiographRequest {
     pub part: Option<String>,
     /// `LOW:HIGH` of the colours; from zero to the largest but a few if absent.
     pub range: Option<String>,
-    /// Whether to reflect at planes of symmetry.
+    /// `true` to reflect at planes of symmetry.
     pub mirror: bool,
     /// Bodies that are drawn; all if there are none.
     pub bodies: Vec<String>,
@@ -54,13 +54,13 @@ pub struct RadiographRequest {
 #[derive(Debug)]
 pub struct Radiographs {
     titles: Titles,
-    wanted: Wanted,
+    selection: Selection,
     camera: Camera,
     axes: [&'static str; 2],
-    place: String,
+    caption: String,
     view: View,
     range: Option<[f64; 2]>,
-    /// What colours mean, once a picture has been drawn: the same in all.
+    /// The meaning of colours, once a picture has been drawn: the same in all.
     colours: OnceLock<Colours>,
     /// Each snapshot, with the numbers of its bodies.
     snapshots: Vec<Numbered>,
@@ -88,20 +88,20 @@ impl Radiographs {
         let range = request.range.as_deref();
         let range = range.map(|text| parse_span(text, None, UNIT)).transpose()?;
         let part = request.part.as_deref().map(View::parse).transpose()?;
-        let mut wanted = Wanted {
+        let mut selection = Selection {
             bodies: Bodies::new(&request.bodies),
-            shown: Shown::Body,
+            drawn: Drawn::Body,
             mirror: request.mirror,
         };
         let mut survey = Survey::new(REACH);
-        survey.look(sources, &mut wanted, (&camera, &Cuts::default()), FLAT)?;
+        survey.look(sources, &mut selection, &camera, &Cuts::default(), FLAT)?;
         let view = survey
             .view()
             .ok_or(PlotError::Options("there is no matter to draw"))?;
-        let mut place = format!("radiograph along {}", request.along);
-        let caption = wanted.caption(&first);
-        if !caption.is_empty() {
-            place = format!("{place},  {caption}");
+        let mut caption = format!("radiograph along {}", request.along);
+        let images = selection.caption(&first);
+        if !images.is_empty() {
+            caption = format!("{caption},  {images}");
         }
         let plane = Plane {
             axis: along,
@@ -109,10 +109,10 @@ impl Radiographs {
         };
         Ok(Self {
             titles: Titles::new(first.title.clone(), sources, &survey.times),
-            wanted,
+            selection,
             camera,
             axes: plane.picture_axes().map(Axis::name),
-            place,
+            caption,
             view: part.unwrap_or(view),
             range,
             colours: OnceLock::new(),
@@ -123,15 +123,15 @@ impl Radiographs {
     /// The masses of the pixels of a panel.
     ///
     /// # Errors
-    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it does not
-    /// tell masses.
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it has no
+    /// masses.
     fn masses(&self, k: usize, size: [usize; 2], view: View) -> Result<Masses, PlotError> {
         let (path, numbers) = &self.snapshots[k];
         let snapshot = Snapshot::open(path)?;
-        let mirrors = self.wanted.mirrors(&snapshot);
+        let mirrors = self.selection.mirrors(&snapshot);
         let mut masses = Masses::new(size, view);
         for rows in snapshot.chunks() {
-            let grains = self.wanted.masses(&snapshot, numbers, rows)?;
+            let grains = self.selection.masses(&snapshot, numbers, rows)?;
             let portion = |part: &[Grain]| {
                 let mut images = Vec::new();
                 let mut spots = Vec::new();
@@ -155,11 +155,11 @@ impl Radiographs {
     }
 
     /// Mass per area of each pixel (kg/m²), row by row from the top, of a panel of columns and rows
-    /// that shows all there is.
+    /// that holds the whole model.
     ///
     /// # Errors
-    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it does not
-    /// tell masses.
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it has no
+    /// masses.
     pub fn areal(&self, k: usize, size: [usize; 2]) -> Result<Vec<f64>, PlotError> {
         Ok(self.masses(k, size, self.view)?.areal())
     }
@@ -170,7 +170,7 @@ impl Radiographs {
         Masses::new(size, self.view).area()
     }
 
-    /// What colours mean: of all snapshots, of which those of `known` are drawn already.
+    /// The meaning of colours: of all snapshots, of which those of `known` are drawn already.
     fn colours(
         &self,
         known: &[(usize, Vec<f64>)],
@@ -181,8 +181,8 @@ impl Radiographs {
         }
         let mut sampled = Sampled::default();
         let mut add = |pixels: &[f64]| {
-            let matter = pixels.iter().copied().filter(|&value| value > 0.0);
-            sampled.extend(matter, pixels.len());
+            let covered = pixels.iter().copied().filter(|&value| value > 0.0);
+            sampled.extend(covered, pixels.len());
         };
         for k in 0..self.snapshots.len() {
             match known.iter().find(|(n, _)| *n == k) {
@@ -203,8 +203,8 @@ impl Sequence for Radiographs {
         &self.titles
     }
 
-    fn place(&self) -> &str {
-        &self.place
+    fn caption(&self) -> &str {
+        &self.caption
     }
 
     fn draw(

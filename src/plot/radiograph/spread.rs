@@ -1,8 +1,8 @@
 //! Mass per area from particles.
 //!
-//! A particle of size s is spread by the product of two quadratic B-splines over a square of 3 s a side.
-//! On a lattice of spacing s along the picture's axes they add up to one at every place, so that
-//! matter of even thickness is even in the picture. A pixel takes the integral over its own
+//! A particle of size s is spread by the product of two quadratic B-splines over a square of 3 s a
+//! side. On a lattice of spacing s along the picture's axes they add up to one at every point, so
+//! that bodies of even thickness are even in the picture. A pixel takes the integral over its own
 //! area, so that none of the mass within the frame is lost, however small particles are.
 //!
 //! Bands of rows are summed side by side, each in the order of the particles: the same bits on any
@@ -17,13 +17,13 @@ use crate::picture::view::View;
 /// Rows of pixels that one task sums.
 const BAND: usize = 16;
 
-/// How far a particle reaches, in its own sizes.
+/// Reach of a particle, in its own sizes.
 pub const REACH: f64 = 1.5;
 
 /// A particle on its way into a radiograph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spot {
-    /// Where: to the right and upwards (m).
+    /// Position: to the right and upwards (m).
     pub at: [f64; 2],
     /// Its size s (m).
     pub size: f64,
@@ -68,7 +68,7 @@ impl Masses {
         let (view, columns, rows) = (self.view, self.columns, self.rows);
         let pitch = [view.width() / columns as f64, view.height() / rows as f64];
         // In pixels from the upper left corner.
-        let place = |spot: &Spot| {
+        let in_pixels = |spot: &Spot| {
             [
                 (spot.at[0] - view.x[0]) / pitch[0],
                 (view.y[1] - spot.at[1]) / pitch[1],
@@ -76,7 +76,7 @@ impl Masses {
         };
         let reach = |spot: &Spot, k: usize| REACH * spot.size / pitch[k];
         let touched = |spot: &Spot| {
-            let [x, y] = place(spot);
+            let [x, y] = in_pixels(spot);
             let own = pixels(y, reach(spot, 1), rows);
             if own.is_empty() || pixels(x, reach(spot, 0), columns).is_empty() {
                 0..0
@@ -97,7 +97,7 @@ impl Masses {
             let mut shares = Vec::new();
             for &index in &bands[band] {
                 let spot = &spots[index];
-                let [x, y] = place(spot);
+                let [x, y] = in_pixels(spot);
                 let [wide, high] = pitch.map(|pitch| spot.size / pitch);
                 let across = pixels(x, reach(spot, 0), columns);
                 shares.clear();

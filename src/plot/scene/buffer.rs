@@ -1,9 +1,9 @@
-//! What is nearest to the viewer at each sample of a panel, ball by ball.
+//! The nearest ball to the viewer at each sample of a panel.
 //!
-//! A sample holds one number: the distance from the viewer in its upper half, which ball it is in the
-//! lower. The least of these numbers is the same in any order, so that all threads may draw
+//! A sample holds one number: the distance from the viewer in its upper half, the index of the ball
+//! in the lower. The least of these numbers is the same in any order, so that all threads may draw
 //! anywhere. Balls come in portions; after each, samples that a new ball has taken are
-//! [settled](Buffer::settle), and their balls are forgotten.
+//! [resolved](Buffer::resolve), and their balls are forgotten.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -26,18 +26,18 @@ pub struct Ball {
     /// Its middle: to the right, down, towards the viewer.
     pub at: [f32; 3],
     pub radius: f32,
-    /// The shown number.
+    /// The drawn number.
     pub value: f32,
     /// Number of its body in the picture.
     pub body: u16,
 }
 
-/// What is seen at a sample.
+/// The visible surface at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seen {
-    /// How near to the viewer (samples).
+    /// Distance towards the viewer (samples).
     pub depth: f32,
-    /// The shown number.
+    /// The drawn number.
     pub value: f32,
     /// The normal of its surface: to the right and up, in 1/[`ONE`].
     normal: [i16; 2],
@@ -45,7 +45,7 @@ pub struct Seen {
     pub body: u16,
 }
 
-/// What a normal of length one is in integers.
+/// A normal of length one in integers.
 const ONE: f32 = 32_000.0;
 
 impl Seen {
@@ -67,7 +67,7 @@ impl Seen {
 /// The samples of a panel.
 pub struct Buffer {
     nearest: Vec<AtomicU64>,
-    /// What is seen, row by row.
+    /// The visible surface, row by row.
     pub seen: Vec<Seen>,
 }
 
@@ -96,11 +96,11 @@ impl Buffer {
                     mark(nearest, window, ball, index);
                 }
             });
-        self.settle(balls, window);
+        self.resolve(balls, window);
     }
 
     /// Takes down what is seen of the balls just drawn.
-    fn settle(&mut self, balls: &[Ball], window: &Window) {
+    fn resolve(&mut self, balls: &[Ball], window: &Window) {
         let columns = window.columns;
         let rows = self.seen.par_chunks_mut(columns);
         rows.zip(self.nearest.par_chunks(columns))
@@ -152,13 +152,14 @@ fn mark(nearest: &[AtomicU64], window: &Window, ball: &Ball, index: usize) {
     }
 }
 
-/// How far the surface of a ball stands towards the viewer over its middle, at a place beside it.
+/// The height of the surface of a ball over its middle towards the viewer, at a point beside it.
 fn height(radius: f32, dx: f32, dy: f32) -> Option<f32> {
     let rest = radius * radius - (dx * dx + dy * dy);
     (rest > 0.0).then(|| rest.sqrt())
 }
 
-/// What is seen of a ball at a sample where its surface, or the plane that cuts it, is at a depth.
+/// The visible surface of a ball at a sample where its surface, or the plane that cuts it, is at a
+/// depth.
 fn look(ball: &Ball, at: [f32; 2], depth: f32, window: &Window) -> Seen {
     let radius = ball.radius.max(LEAST);
     let (dx, dy) = (at[0] - ball.at[0], at[1] - ball.at[1]);
@@ -198,8 +199,8 @@ fn span(at: f32, radius: f32, count: usize) -> std::ops::Range<usize> {
     first..end.max(first)
 }
 
-/// Depth and ball as a number, the less the nearer; of balls at the same depth the first, and before
-/// them what was settled.
+/// Depth and ball as a number, the less the nearer; of balls at the same depth the first, and
+/// before them resolved ones.
 fn number(depth: f32, index: Option<usize>) -> u64 {
     let bits = (-depth).to_bits();
     let ordered = if bits >> 31 == 0 {
@@ -211,7 +212,7 @@ fn number(depth: f32, index: Option<usize>) -> u64 {
     (u64::from(ordered) << 32) | index
 }
 
-/// Depth and ball of a number; none of a sample that is settled or empty.
+/// Depth and ball of a number; no ball for a sample that is resolved or empty.
 #[expect(clippy::cast_possible_truncation, reason = "halves of a number")]
 fn parts(number: u64) -> (f32, Option<usize>) {
     if number == u64::MAX {
@@ -273,9 +274,12 @@ mod tests {
             assert_eq!(seen.body == 3, x.hypot(y) < 12.3);
             if seen.body == 3 {
                 let normal = seen.normal();
-                for (part, wanted) in normal.into_iter().zip([x, -y, seen.depth]) {
+                for (part, selection) in normal.into_iter().zip([x, -y, seen.depth]) {
                     // Steep sides lose digits of what points at the viewer.
-                    assert!((part - wanted / 12.3).abs() < 0.02, "{x} {y}: {normal:?}");
+                    assert!(
+                        (part - selection / 12.3).abs() < 0.02,
+                        "{x} {y}: {normal:?}"
+                    );
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use crate::PlotError;
 
-/// What views may be called, with the azimuth and the elevation of the viewer (degrees).
+/// The names of views, with the azimuth and the elevation of the viewer (degrees).
 const NAMES: [(&str, [f64; 2]); 7] = [
     ("isometric", [-45.0, ISOMETRIC]),
     ("front", [0.0, 0.0]),
@@ -22,7 +22,7 @@ const ISOMETRIC: f64 = 35.264_389_682_754_654;
 /// from there to the right, the elevation lifts it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
-    /// How captions call the view.
+    /// The name of the view in captions.
     pub name: String,
     /// Unit vector to the right of the picture.
     pub right: [f64; 3],
@@ -71,7 +71,7 @@ impl Camera {
         }
     }
 
-    /// Whether a text that may be a part of the plane is a view: it has no range in it.
+    /// `true` if a text that may be a part of the plane is a view: it has no range in it.
     #[must_use]
     pub fn is_view(text: &str) -> bool {
         !text.contains(':')

@@ -3,13 +3,13 @@
 use super::camera::Camera;
 use crate::PlotError;
 use crate::snapshots::plane::Plane;
-use crate::snapshots::slice::place;
+use crate::snapshots::slice::position_text;
 use crate::snapshots::snapshot::Snapshot;
 
-/// A plane that is steeper to the picture than this takes away nothing that can be told.
+/// A plane that is steeper to the picture than this takes nothing visible away.
 const EDGE_ON: f64 = 1e-6;
 
-/// What is taken away: all that lies on the viewer's side of each plane of one of the wedges.
+/// The wedges that are taken away: all that lies on the viewer's side of each plane of one of them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cuts {
     wedges: Vec<Vec<Plane>>,
@@ -49,7 +49,7 @@ impl Cuts {
     }
 
     /// The wedge between the planes of symmetry that the viewer sees the sides of: a model that is
-    /// shown whole is opened there.
+    /// drawn whole is opened there.
     pub fn open(camera: &Camera, snapshot: &Snapshot) -> Self {
         let planes = snapshot.symmetry.iter().map(|plane| Plane {
             axis: plane.axis,
@@ -86,7 +86,8 @@ impl Cuts {
 
     /// `"cut open at x = 0 and y = 0"`; nothing if there is no cut.
     pub fn caption(&self, snapshot: &Snapshot) -> String {
-        let plane = |plane: &Plane| place(plane.axis.name(), plane.position, snapshot.finest());
+        let plane =
+            |plane: &Plane| position_text(plane.axis.name(), plane.position, snapshot.finest());
         let wedge = |wedge: &Vec<Plane>| wedge.iter().map(plane).collect::<Vec<_>>().join(" and ");
         match &self.wedges[..] {
             [] => String::new(),
@@ -103,13 +104,13 @@ impl Cuts {
 pub struct Slope {
     /// Its distance towards the viewer over the origin of the picture's axes (m).
     pub at_middle: f64,
-    /// How that changes to the right and upwards.
+    /// Its change to the right and upwards.
     pub along: [f64; 2],
     /// Its normal towards the viewer, along the picture's axes.
     pub normal: [f64; 3],
 }
 
-/// Whether what lies at a place along the picture's axes (m) is taken away.
+/// `true` if a point along the picture's axes (m) is taken away.
 pub fn takes(slopes: &[Vec<Slope>], at: &[f64; 3]) -> bool {
     let is_above = |slope: &Slope| {
         let [a, b] = slope.along;

@@ -1,9 +1,10 @@
-//! How open the place is that a sample shows: what stands around it keeps light away.
+//! Ambient occlusion: surroundings of a sample keep light away.
 //!
-//! About each sample others are looked at within a disc. One that rises over the surface takes light
-//! by the cosine of its direction from the normal, less the farther it is (after Bavoil & Sainz, 2009,
-//! and `McGuire` et al., 2012). The samples of a pixel look at different places, which are the same for each
-//! pixel, so that their mean is smooth, and each picture of a movie has the same pattern.
+//! About each sample others are looked at within a disc. One that rises over the surface takes
+//! light by the cosine of its direction from the normal, less the farther it is (after Bavoil &
+//! Sainz, 2009, and `McGuire` et al., 2012). The samples of a pixel look at different points, which
+//! are the same for each pixel, so that their mean is smooth, and each picture of a movie has the
+//! same pattern.
 
 use rayon::prelude::*;
 
@@ -19,7 +20,7 @@ const TURN: f32 = 2.399_963_2;
 /// Cosine below which what rises over a surface is a part of it.
 const FLAT: f32 = 0.12;
 
-/// How much of the light goes where all is taken.
+/// The share of the light that goes where all is taken.
 const STRENGTH: f32 = 2.1;
 
 /// The open share of each sample, 0 to 1, row by row, of what is within a radius (samples); a pixel is
@@ -74,7 +75,7 @@ impl Near<'_> {
             let (right, up) = (dx as f32, -dy as f32);
             let squared = right * right + up * up + rise * rise;
             let over = right * normal[0] + up * normal[1] + rise * normal[2];
-            // What is nowhere is infinitely far down.
+            // Empty samples are infinitely far down.
             if over <= 0.0 {
                 continue;
             }
@@ -96,12 +97,12 @@ impl Near<'_> {
 fn patterns(fine: usize, radius: f32) -> Vec<Vec<[isize; 2]>> {
     let count = fine * fine;
     let all = PLACES.next_multiple_of(count);
-    let place = |k: usize| {
+    let offset = |k: usize| {
         let share = (k as f32 + 0.5) / all as f32;
         let (reach, angle) = (1.0 + (radius - 1.0) * share.powf(1.5), TURN * k as f32);
         let whole = |length: f32| length.round() as isize;
         [whole(reach * angle.cos()), whole(reach * angle.sin())]
     };
-    let pattern = |first: usize| (first..all).step_by(count).map(place).collect();
+    let pattern = |first: usize| (first..all).step_by(count).map(offset).collect();
     (0..count).map(pattern).collect()
 }

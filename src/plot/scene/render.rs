@@ -11,8 +11,8 @@ use super::window::Window;
 use crate::PlotError;
 use crate::canvas::Rgb;
 use crate::picture::view::View;
+use crate::snapshots::grains::{Grain, PORTION, Selection};
 use crate::snapshots::images::Mirrors;
-use crate::snapshots::matter::{Grain, PORTION, Wanted};
 use crate::snapshots::snapshot::Snapshot;
 
 /// Samples along either axis of a pixel, where memory allows.
@@ -28,12 +28,12 @@ pub const MOST_PIXELS: usize = 100_000_000;
 /// and nothing is seen between its columns.
 pub const RADIUS: f64 = 0.72;
 
-/// How far around a place others keep light away, over the diagonal of the panel.
+/// Radius of occlusion, over the diagonal of the panel.
 const AROUND: f32 = 0.045;
 
-/// What is drawn, whatever the snapshot.
+/// The scene, without the snapshot.
 pub struct Stage<'a> {
-    pub wanted: &'a Wanted,
+    pub selection: &'a Selection,
     pub camera: &'a Camera,
     pub cuts: &'a Cuts,
     /// Numbers of the transparent bodies.
@@ -81,12 +81,12 @@ impl Stage<'_> {
         Ok(pixels(&layers, size, fine, &colour))
     }
 
-    /// Number of layers: the opaque matter, and each transparent body.
+    /// Number of layers: the opaque bodies, and each transparent one.
     fn layers(&self) -> usize {
         1 + self.transparent.len()
     }
 
-    /// What is seen of the opaque matter, then of each transparent body.
+    /// The visible surface of the opaque bodies, then of each transparent one.
     fn buffers(
         &self,
         snapshot: &Snapshot,
@@ -95,13 +95,13 @@ impl Stage<'_> {
     ) -> Result<Vec<Buffer>, PlotError> {
         let layers = 0..self.layers();
         let mut buffers: Vec<Buffer> = layers.map(|_| Buffer::new(window)).collect();
-        let mirrors = self.wanted.mirrors(snapshot);
+        let mirrors = self.selection.mirrors(snapshot);
         for rows in snapshot.chunks() {
-            let grains = self.wanted.grains(snapshot, numbers, rows)?;
+            let grains = self.selection.grains(snapshot, numbers, rows)?;
             for (layer, buffer) in buffers.iter_mut().enumerate() {
                 let of_layer = |grain: &&Grain| {
-                    let place = self.transparent.iter().position(|&b| b == grain.body);
-                    place.map_or(0, |place| place + 1) == layer
+                    let index = self.transparent.iter().position(|&b| b == grain.body);
+                    index.map_or(0, |index| index + 1) == layer
                 };
                 buffer.draw(&self.balls(&grains, of_layer, &mirrors, window), window);
             }
@@ -113,17 +113,17 @@ impl Stage<'_> {
     fn balls(
         &self,
         grains: &[Grain],
-        wanted: impl Fn(&&Grain) -> bool + Sync,
+        selection: impl Fn(&&Grain) -> bool + Sync,
         mirrors: &Mirrors,
         window: &Window,
     ) -> Vec<Ball> {
         let portion = |part: &[Grain]| {
             let mut images = Vec::new();
             let mut balls = Vec::new();
-            for grain in part.iter().filter(&wanted) {
+            for grain in part.iter().filter(&selection) {
                 mirrors.reflect(&grain.point, &mut images);
                 balls.extend(images.iter().map(|image| Ball {
-                    at: window.place(self.camera.project(&image.point)),
+                    at: window.to_samples(self.camera.project(&image.point)),
                     radius: window.length(RADIUS * grain.size),
                     value: single(if image.flipped {
                         -grain.value

@@ -19,13 +19,13 @@ use crate::picture::titles::Titles;
 use crate::picture::view::View;
 use crate::sequence::Sequence;
 use crate::snapshots::bodies::Bodies;
-use crate::snapshots::field::Shown;
-use crate::snapshots::matter::Wanted;
+use crate::snapshots::field::Drawn;
+use crate::snapshots::grains::Selection;
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 use crate::style::whole;
 
-/// What to draw, as typed.
+/// A request for views, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneRequest {
     /// From where: a name or `AZIMUTH,ELEVATION`.
@@ -36,7 +36,7 @@ pub struct SceneRequest {
     pub field: Option<String>,
     /// `LOW:HIGH` of the colours; all values if absent.
     pub range: Option<String>,
-    /// Whether to reflect at planes of symmetry.
+    /// `true` to reflect at planes of symmetry.
     pub mirror: bool,
     /// Planes that open the model; if there are none, planes of symmetry where it is mirrored.
     pub cuts: Vec<String>,
@@ -46,7 +46,7 @@ pub struct SceneRequest {
     pub transparent: Vec<String>,
 }
 
-/// What is said of a flat model.
+/// The message for a flat model.
 const FLAT: &str =
     "a view needs a model of three dimensions: a flat one is drawn as it is, without a view";
 
@@ -54,11 +54,11 @@ const FLAT: &str =
 #[derive(Debug)]
 pub struct Scenes {
     titles: Titles,
-    wanted: Wanted,
+    selection: Selection,
     camera: Camera,
     cuts: Cuts,
     transparent: Vec<usize>,
-    place: String,
+    caption: String,
     colours: Colours,
     view: View,
     depth: f64,
@@ -86,27 +86,27 @@ impl Scenes {
         } else {
             Cuts::parse(&request.cuts, &camera, &first)?
         };
-        let shown = Shown::find(&first, request.field.as_deref().unwrap_or("body"))?;
-        let range = shown.range(request.range.as_deref())?;
+        let drawn = Drawn::find(&first, request.field.as_deref().unwrap_or("body"))?;
+        let range = drawn.range(request.range.as_deref())?;
         let part = request.part.as_deref().map(View::parse).transpose()?;
 
-        let mut wanted = Wanted {
+        let mut selection = Selection {
             bodies: Bodies::new(&request.bodies),
-            shown,
+            drawn,
             mirror: request.mirror,
         };
         let mut survey = Survey::new(RADIUS);
-        survey.look(sources, &mut wanted, (&camera, &cuts), FLAT)?;
+        survey.look(sources, &mut selection, &camera, &cuts, FLAT)?;
         let view = survey.view().ok_or(PlotError::Options(
             "there is nothing to see: choose another --cut, or other --bodies",
         ))?;
         Ok(Self {
             titles: Titles::new(first.title.clone(), sources, &survey.times),
-            transparent: wanted.bodies.numbers(&request.transparent)?,
-            place: place(&camera, &cuts, &wanted, &first),
-            colours: match &wanted.shown {
-                Shown::Body => Colours::Bodies(wanted.bodies.names.clone()),
-                Shown::Field(field) => {
+            transparent: selection.bodies.numbers(&request.transparent)?,
+            caption: caption(&camera, &cuts, &selection, &first),
+            colours: match &selection.drawn {
+                Drawn::Body => Colours::Bodies(selection.bodies.names.clone()),
+                Drawn::Field(field) => {
                     let scale = survey.values.scale(range);
                     let lost = survey.values.lost;
                     Colours::Bar(ColourBar::new(scale, &field.label, &field.unit, lost))
@@ -115,7 +115,7 @@ impl Scenes {
             view: part.unwrap_or(view),
             depth: survey.depth(),
             seen: survey.bodies(),
-            wanted,
+            selection,
             camera,
             cuts,
             snapshots: survey.snapshots,
@@ -138,7 +138,9 @@ impl Scenes {
         let body = usize::from(seen.body);
         match &self.colours {
             Colours::Bodies(_) => colour::body(body),
-            Colours::Bar(_) if self.wanted.bodies.rigid.get(body) == Some(&true) => colour::RIGID,
+            Colours::Bar(_) if self.selection.bodies.rigid.get(body) == Some(&true) => {
+                colour::RIGID
+            }
             Colours::Bar(bar) => bar.scale.colour(f64::from(seen.value)),
         }
     }
@@ -149,8 +151,8 @@ impl Sequence for Scenes {
         &self.titles
     }
 
-    fn place(&self) -> &str {
-        &self.place
+    fn caption(&self) -> &str {
+        &self.caption
     }
 
     fn draw(
@@ -177,7 +179,7 @@ impl Sequence for Scenes {
             return Err(PlotError::Size { width, height });
         }
         let stage = Stage {
-            wanted: &self.wanted,
+            selection: &self.selection,
             camera: &self.camera,
             cuts: &self.cuts,
             transparent: &self.transparent,
@@ -198,10 +200,10 @@ impl Sequence for Scenes {
     }
 }
 
-/// From where, cut open at which planes, mirrored at which, and what alone is shown.
-fn place(camera: &Camera, cuts: &Cuts, wanted: &Wanted, snapshot: &Snapshot) -> String {
+/// The viewpoint, the planes that cut and mirror, and the bodies that alone are drawn.
+fn caption(camera: &Camera, cuts: &Cuts, selection: &Selection, snapshot: &Snapshot) -> String {
     let mut texts = vec![camera.name.clone(), cuts.caption(snapshot)];
-    texts.push(wanted.caption(snapshot));
+    texts.push(selection.caption(snapshot));
     texts.retain(|text| !text.is_empty());
     texts.join(",  ")
 }

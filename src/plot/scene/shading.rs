@@ -10,7 +10,7 @@ const LIGHT: [f32; 3] = [-0.445, 0.593, 0.671];
 const AROUND: f32 = 0.56;
 const DIRECT: f32 = 0.52;
 
-/// How dark the most hidden place is.
+/// The light of the most hidden point.
 const DARKEST: f32 = 0.28;
 
 /// Share of the light behind that a transparent body takes away.
@@ -28,13 +28,13 @@ pub fn shade(seen: &Seen, open: f32, colour: Rgb) -> [f32; 3] {
         if light <= 1.0 {
             c * light
         } else {
-            // What is brighter than the colour itself goes towards white.
+            // Light beyond the colour itself goes towards white.
             c + (255.0 - c) * (light - 1.0)
         }
     })
 }
 
-/// A layer of the picture: opaque matter, or one transparent body.
+/// A layer of the picture: opaque bodies, or one transparent body.
 pub struct Layer<'a> {
     pub seen: &'a [Seen],
     pub open: &'a [f32],

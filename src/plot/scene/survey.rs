@@ -1,4 +1,5 @@
-//! Where matter lies in a view, and its values: what the frame and the colours of all pictures rest on.
+//! Positions and values of particles in a view: the frame and the colours of all pictures rest on
+//! them.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -9,23 +10,23 @@ use super::camera::Camera;
 use super::cut::{Cuts, takes};
 use crate::PlotError;
 use crate::picture::view::View;
-use crate::snapshots::field::Shown;
-use crate::snapshots::matter::{Grain, PORTION, Wanted};
+use crate::snapshots::field::Drawn;
+use crate::snapshots::grains::{Grain, PORTION, Selection};
 use crate::snapshots::sample::Sampled;
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 
-/// What there is to see of some snapshots.
+/// The extent and values of some snapshots.
 #[derive(Debug)]
 pub struct Survey {
-    /// How far a particle reaches, in its own sizes.
+    /// Reach of a particle, in its own sizes.
     sizes: f64,
     /// Lowest and highest place along the picture's axes: to the right, upwards, towards the viewer
     /// (m).
     reach: [[f64; 2]; 3],
     /// The values.
     pub values: Sampled,
-    /// Which bodies there are.
+    /// The bodies that there are.
     bodies: BTreeSet<usize>,
     /// Times of the snapshots (s).
     pub times: Vec<f64>,
@@ -40,7 +41,7 @@ pub type Numbered = (PathBuf, Vec<usize>);
 const NONE: [[f64; 2]; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
 
 impl Survey {
-    /// Of no snapshot, whose particles reach so many of their sizes far.
+    /// Of no snapshot, whose particles reach `sizes` of their sizes far.
     pub fn new(sizes: f64) -> Self {
         Self {
             sizes,
@@ -60,8 +61,9 @@ impl Survey {
     pub fn look(
         &mut self,
         sources: &[Source],
-        wanted: &mut Wanted,
-        from: (&Camera, &Cuts),
+        selection: &mut Selection,
+        camera: &Camera,
+        cuts: &Cuts,
         flat: &'static str,
     ) -> Result<(), PlotError> {
         for path in sources.iter().flat_map(|source| &source.snapshots) {
@@ -69,12 +71,12 @@ impl Survey {
             if snapshot.dimension < 3 {
                 return Err(PlotError::Options(flat));
             }
-            let numbers = wanted.bodies.add(&snapshot);
-            self.add(&snapshot, &numbers, wanted, from)?;
+            let numbers = selection.bodies.add(&snapshot);
+            self.add(&snapshot, &numbers, selection, camera, cuts)?;
             self.times.push(snapshot.time);
             self.snapshots.push((path.clone(), numbers));
         }
-        wanted.bodies.check()
+        selection.bodies.check()
     }
 
     /// Looks at a snapshot; `numbers` are those of its bodies in the picture.
@@ -82,14 +84,15 @@ impl Survey {
         &mut self,
         snapshot: &Snapshot,
         numbers: &[usize],
-        wanted: &Wanted,
-        (camera, cuts): (&Camera, &Cuts),
+        selection: &Selection,
+        camera: &Camera,
+        cuts: &Cuts,
     ) -> Result<(), PlotError> {
-        let mirrors = wanted.mirrors(snapshot);
+        let mirrors = selection.mirrors(snapshot);
         let slopes = cuts.slopes(camera);
         let particles = snapshot.file.particles();
         for rows in snapshot.chunks() {
-            let grains = wanted.grains(snapshot, numbers, rows)?;
+            let grains = selection.grains(snapshot, numbers, rows)?;
             let portion = |part: &[Grain]| {
                 let mut images = Vec::new();
                 let mut reach = NONE;
@@ -97,7 +100,8 @@ impl Survey {
                 let mut bodies = BTreeSet::new();
                 for grain in part {
                     mirrors.reflect(&grain.point, &mut images);
-                    let bears = wanted.shown != Shown::Body && !wanted.bodies.rigid[grain.body];
+                    let bears =
+                        selection.drawn != Drawn::Body && !selection.bodies.rigid[grain.body];
                     for image in &images {
                         let at = camera.project(&image.point);
                         if takes(&slopes, &at) {
@@ -116,14 +120,14 @@ impl Survey {
                 }
                 (reach, values, bodies)
             };
-            let found: Vec<_> = grains.par_chunks(PORTION).map(portion).collect();
-            for (reach, _, bodies) in &found {
+            let portions: Vec<_> = grains.par_chunks(PORTION).map(portion).collect();
+            for (reach, _, bodies) in &portions {
                 self.bodies.extend(bodies);
                 for (own, other) in self.reach.iter_mut().zip(reach) {
                     *own = [own[0].min(other[0]), own[1].max(other[1])];
                 }
             }
-            let values = found.into_iter().flat_map(|(_, values, _)| values);
+            let values = portions.into_iter().flat_map(|(_, values, _)| values);
             self.values.extend(values, particles);
         }
         Ok(())

@@ -1,4 +1,4 @@
-//! Where the axes of the model point in a view.
+//! The directions of the model's axes in a view.
 
 use super::camera::Camera;
 use crate::arrow;

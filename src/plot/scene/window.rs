@@ -11,7 +11,7 @@ pub struct Window {
     pub columns: usize,
     /// Rows of samples.
     pub rows: usize,
-    /// What lies in its middle (m).
+    /// The point in its middle (m).
     middle: [f64; 3],
     /// Samples per metre.
     scale: f64,
@@ -74,7 +74,7 @@ impl Window {
     }
 
     /// A projected place (m) in samples.
-    pub fn place(&self, [right, up, towards]: [f64; 3]) -> [f32; 3] {
+    pub fn to_samples(&self, [right, up, towards]: [f64; 3]) -> [f32; 3] {
         [
             ((right - self.middle[0]) * self.scale) as f32,
             ((self.middle[1] - up) * self.scale) as f32,
@@ -96,7 +96,7 @@ impl Window {
         ]
     }
 
-    /// How near to the viewer matter may be at a place: what is nearer is cut away.
+    /// The distance to the viewer at a point beyond which all is cut away.
     pub fn limit(&self, [x, y]: [f32; 2]) -> f32 {
         let level = |level: &Level| level.at_middle + level.along[0] * x + level.along[1] * y;
         let wedge = |wedge: &Vec<Level>| wedge.iter().map(level).fold(f32::NEG_INFINITY, f32::max);

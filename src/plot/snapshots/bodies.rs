@@ -3,19 +3,19 @@
 use super::snapshot::Snapshot;
 use crate::PlotError;
 
-/// The bodies of a picture, and which of them are shown.
+/// The bodies of a picture, and which of them are drawn.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Bodies {
-    /// Names, in the order in which snapshots have told them.
+    /// Names, in the order of the snapshots.
     pub names: Vec<String>,
-    /// Which are rigid.
+    /// `true` for rigid ones.
     pub rigid: Vec<bool>,
-    /// Names of those that are shown; all if there are none.
+    /// Names of those that are drawn; all if there are none.
     chosen: Vec<String>,
 }
 
 impl Bodies {
-    /// Of no snapshot yet, of which those of some names will be shown, or all.
+    /// Of no snapshot yet, of which those of some names will be drawn, or all.
     pub fn new(chosen: &[String]) -> Self {
         Self {
             chosen: chosen.to_vec(),
@@ -39,12 +39,12 @@ impl Bodies {
         bodies.map(number).collect()
     }
 
-    /// Whether the body of a number is shown.
+    /// `true` if the body of a number is drawn.
     pub fn shows(&self, number: usize) -> bool {
         self.chosen.is_empty() || self.chosen.contains(&self.names[number])
     }
 
-    /// Names of those that are shown, if not all are.
+    /// Names of those that are drawn, if not all are.
     pub fn alone(&self) -> Option<&[String]> {
         (!self.chosen.is_empty()).then_some(&self.chosen[..])
     }
@@ -52,7 +52,7 @@ impl Bodies {
     /// The numbers of bodies by their names.
     ///
     /// # Errors
-    /// [`PlotError::Body`] for a name that no snapshot has told.
+    /// [`PlotError::Body`] for a name that is in no snapshot.
     pub fn numbers(&self, names: &[String]) -> Result<Vec<usize>, PlotError> {
         let number = |name: &String| {
             let number = self.names.iter().position(|n| n == name);
@@ -64,7 +64,7 @@ impl Bodies {
         names.iter().map(number).collect()
     }
 
-    /// Whether all that were chosen are there.
+    /// Checks that all chosen ones are there.
     ///
     /// # Errors
     /// [`PlotError::Body`] if not.

@@ -1,6 +1,6 @@
-//! Where particles lie, and how bodies move.
+//! The extent of particles, and the motion of bodies.
 
-/// Where particles lie along an axis.
+/// The extent of particles along an axis.
 #[derive(Debug, Clone, Copy)]
 pub struct Extent {
     pub lowest: f64,
@@ -41,12 +41,12 @@ impl Extent {
     }
 }
 
-/// What a body is and does, as far as the choice of a plane needs it.
+/// A body and its motion, as far as the choice of a plane needs them.
 #[derive(Debug, Clone, Default)]
 pub struct Mover {
-    /// Where its particles lie.
+    /// The extents of its particles.
     pub extents: [Extent; 3],
-    /// How many they are.
+    /// Their number.
     pub particles: f64,
     /// Its mass at the start of the run (kg).
     pub mass: f64,

@@ -1,4 +1,4 @@
-//! Which number of a particle a picture shows.
+//! The quantity of a particle that a picture draws.
 
 use std::ops::Range;
 
@@ -16,9 +16,9 @@ pub const SYMMETRIC: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// Components of a tensor, row by row.
 pub const TENSOR: [&str; 9] = ["xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"];
 
-/// What the particles of a picture are coloured by.
+/// The quantity that colours the particles of a picture.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Shown {
+pub enum Drawn {
     /// The body that a particle belongs to.
     Body,
     /// A number.
@@ -51,7 +51,7 @@ enum Pick {
     },
 }
 
-impl Shown {
+impl Drawn {
     /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`; `stress` and
     /// `material_stress` are made from their parts.
     pub fn find(snapshot: &Snapshot, name: &str) -> Result<Self, PlotError> {
@@ -94,7 +94,7 @@ impl Shown {
         }
     }
 
-    /// The shown number of some rows; the body's index for [`Shown::Body`] is left to the caller.
+    /// The drawn number of some rows; the body's index for [`Drawn::Body`] is left to the caller.
     pub fn values(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {
         match self {
             Self::Body => Ok(vec![0.0; rows.len()]),
@@ -102,7 +102,7 @@ impl Shown {
         }
     }
 
-    /// Which of some rows bear it: none that is frozen, but in a picture of just that; where there
+    /// `true` for rows that have it: none that is frozen, but in a picture of just that; if there
     /// are stress points, these or the particles that have mass.
     pub fn bearers(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
         let active = match self {
@@ -124,9 +124,9 @@ impl Shown {
 
 /// Stress by contact forces.
 const CONTACT_STRESS: &str = "contact_stress";
-/// What tells stress points from particles.
+/// The field that separates stress points from particles.
 const STRESS_MASS: &str = "stress_mass";
-/// What stress points bear, where there are any.
+/// The fields of stress points, if there are any.
 const OF_STRESS_POINTS: [&str; 12] = [
     "density",
     "pressure",
@@ -143,7 +143,7 @@ const OF_STRESS_POINTS: [&str; 12] = [
 ];
 
 impl Field {
-    /// Whether its value changes sign in a mirror normal to an axis.
+    /// `true` if its value changes sign in a mirror normal to an axis.
     pub fn flips(&self, axis: Axis) -> bool {
         let letter = axis.name();
         let name = match self.pick {
@@ -201,7 +201,7 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
     let width = snapshot.file.components(dataset)?;
     let words = dataset.replace('_', " ");
     let among = |known: &[&str], part: &str| known.iter().position(|&k| k == part);
-    let found = match (width, part) {
+    let component = match (width, part) {
         (1, None) => Some((Pick::Component(0), words)),
         (3, None | Some("magnitude")) => Some((Pick::Magnitude, format!("{words} magnitude"))),
         (3, Some(part)) => {
@@ -216,7 +216,7 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
         }
         _ => None,
     };
-    let (pick, label) = found.ok_or_else(|| PlotError::Component {
+    let (pick, label) = component.ok_or_else(|| PlotError::Component {
         field: dataset.to_owned(),
         component: part.map(str::to_owned),
         known: match width {
@@ -236,8 +236,8 @@ fn find(snapshot: &Snapshot, dataset: &str, part: Option<&str>) -> Result<Field,
     })
 }
 
-/// A component of a stress, tension positive: of the material stress −p I + S, or of all that
-/// matter bears, that by contact too where the snapshot has it. Stress points have no contact.
+/// A component of a stress, tension positive: of the material stress −p I + S, or of the total
+/// stress, with that of contact if the snapshot has it. Stress points have no contact.
 fn stress(snapshot: &Snapshot, name: &str, part: &str) -> Result<Field, PlotError> {
     find(snapshot, "pressure", None)?;
     let unknown = || PlotError::Component {

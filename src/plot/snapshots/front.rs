@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::field::Shown;
+use super::field::Drawn;
 use super::snapshot::Snapshot;
 use crate::PlotError;
 use engine::fragments::components;
@@ -14,7 +14,7 @@ use model::Axis;
 pub struct Direction {
     /// The axis.
     pub axis: Axis,
-    /// Whether against it, towards its smaller coordinates.
+    /// `true` if against it, towards its smaller coordinates.
     pub backwards: bool,
 }
 
@@ -76,7 +76,7 @@ pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<
         let mut points = Vec::new();
         for rows in snapshot.chunks() {
             let bodies = snapshot.body_of(rows.clone())?;
-            let bearers = Shown::Body.bearers(&snapshot, rows.clone())?;
+            let bearers = Drawn::Body.bearers(&snapshot, rows.clone())?;
             let all = snapshot.file.points(rows)?.into_iter().zip(bodies);
             let wanted = all
                 .zip(bearers)
@@ -131,8 +131,8 @@ mod tests {
         points.push([11.0, 0.0, 0.0]);
         points.push([12.0, 0.0, 0.0]);
         points.push([f64::NAN, 0.0, 0.0]);
-        let found = components(&points, 1.5);
-        assert_eq!(found.iter().map(Vec::len).collect::<Vec<_>>(), [10, 2]);
+        let parts = components(&points, 1.5);
+        assert_eq!(parts.iter().map(Vec::len).collect::<Vec<_>>(), [10, 2]);
         assert_eq!(largest_reaches(&points, 0, 1.0), Some(9.5));
         points.push([10.0, 0.9, 0.0]);
         assert_eq!(components(&points, 1.5).len(), 1);

@@ -1,30 +1,30 @@
 //! Images of particles at planes of symmetry.
 
-use super::field::Shown;
+use super::field::Drawn;
 use model::SymmetryPlane;
 
 /// A place where a particle or an image of it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Image {
-    /// Where (m).
+    /// Position (m).
     pub point: [f64; 3],
-    /// Whether the shown number has the other sign there.
+    /// `true` if the drawn number has the other sign there.
     pub flipped: bool,
 }
 
 /// Planes at which a model is reflected for a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mirrors {
-    /// Each with whether the shown number changes its sign there.
+    /// Each with `true` if the drawn number changes its sign there.
     planes: Vec<(SymmetryPlane, bool)>,
 }
 
 impl Mirrors {
     /// Some planes, for a picture of a number.
-    pub fn new(planes: Vec<SymmetryPlane>, shown: &Shown) -> Self {
-        let flips = |plane: &SymmetryPlane| match shown {
-            Shown::Body => false,
-            Shown::Field(field) => field.flips(plane.axis),
+    pub fn new(planes: Vec<SymmetryPlane>, drawn: &Drawn) -> Self {
+        let flips = |plane: &SymmetryPlane| match drawn {
+            Drawn::Body => false,
+            Drawn::Field(field) => field.flips(plane.axis),
         };
         let planes = planes.into_iter().map(|plane| (plane, flips(&plane)));
         Self {
@@ -67,7 +67,7 @@ mod tests {
             axis,
             position: 1.0,
         };
-        let mirrors = Mirrors::new(vec![plane(Axis::X), plane(Axis::Y)], &Shown::Body);
+        let mirrors = Mirrors::new(vec![plane(Axis::X), plane(Axis::Y)], &Drawn::Body);
         let mut images = Vec::new();
         mirrors.reflect(&[1.5, 1.25, 3.0], &mut images);
         let points: Vec<_> = images.iter().map(|image| image.point).collect();
@@ -78,7 +78,7 @@ mod tests {
             [0.5, 0.75, 3.0],
         ];
         assert_eq!(points, expected);
-        Mirrors::new(Vec::new(), &Shown::Body).reflect(&[1.5, 1.25, 3.0], &mut images);
+        Mirrors::new(Vec::new(), &Drawn::Body).reflect(&[1.5, 1.25, 3.0], &mut images);
         assert_eq!(images.len(), 1);
     }
 }

@@ -1,11 +1,11 @@
-//! What charts and pictures take from snapshots.
+//! Snapshots, as charts and pictures take them.
 
 pub mod bodies;
 pub mod extent;
 pub mod field;
 pub mod front;
+pub mod grains;
 pub mod images;
-pub mod matter;
 pub mod plane;
 pub mod sample;
 pub mod slice;

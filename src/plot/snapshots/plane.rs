@@ -14,7 +14,7 @@ const AT_REST: f64 = 1e-6;
 pub struct Plane {
     /// Normal.
     pub axis: Axis,
-    /// Where it cuts its axis (m).
+    /// Its position on its axis (m).
     pub position: f64,
 }
 
@@ -92,7 +92,7 @@ impl Plane {
         let nearest = snapshot.nearest(axis, mean)?;
         Ok(Self {
             axis,
-            // Where a body is hollow, or has flown apart, its middle may hold nothing.
+            // The middle of a body that is hollow, or has flown apart, may be empty.
             position: nearest.filter(|p| (p - mean).abs() > room).unwrap_or(mean),
         })
     }

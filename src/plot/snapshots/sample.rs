@@ -1,16 +1,16 @@
-//! Values of very many particles, of which some stand for all.
+//! A sample of very many values of particles.
 
 use crate::colour::Scale;
 
 /// Values that one snapshot adds at most, about.
 const MOST: usize = 1 << 18;
 
-/// Values that stand for those of some snapshots, with their ends.
+/// A sample of the values of some snapshots, with their ends.
 #[derive(Debug, Default)]
 pub struct Sampled {
     values: Vec<f64>,
     ends: Option<[f64; 2]>,
-    /// Whether some are no numbers.
+    /// `true` if some are NaN.
     pub lost: bool,
 }
 

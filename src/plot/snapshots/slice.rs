@@ -7,8 +7,8 @@ use crate::units::{self, Readable};
 /// the eye sees.
 pub const NUDGE: f64 = 1e-6;
 
-/// Whether a slice of a half thickness holds a distance from its middle: −half < d ≤ half but
-/// for round-off, so that a lattice shows exactly one layer.
+/// `true` if a slice of a half thickness holds a distance from its middle: −half < d ≤ half but for
+/// round-off, so that exactly one layer of a lattice is drawn.
 pub fn slice(distance: f64, half: f64, spacing: f64) -> bool {
     let nudge = NUDGE * spacing;
     distance > nudge - half && distance <= half + nudge
@@ -28,11 +28,11 @@ pub fn thickness(text: &str) -> Result<f64, PlotError> {
 }
 
 /// `"y = 0.1 mm"`, in a unit that suits the position and the particle spacing.
-pub fn place(axis: &str, position: f64, spacing: f64) -> String {
+pub fn position_text(axis: &str, position: f64, spacing: f64) -> String {
     format!("{axis} = {}", quantity(position, spacing))
 }
 
-/// `"mirrored at x = 0 and y = 0"`, if there are planes, each as [`place`] names it.
+/// `"mirrored at x = 0 and y = 0"`, if there are planes, each as [`position_text`] names it.
 pub fn mirrored(planes: impl Iterator<Item = String>) -> Option<String> {
     let planes: Vec<String> = planes.collect();
     (!planes.is_empty()).then(|| format!("mirrored at {}", planes.join(" and ")))

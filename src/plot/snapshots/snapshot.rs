@@ -8,7 +8,7 @@ use crate::PlotError;
 use files::output::h5::read::SnapshotFile;
 use model::{Axis, SymmetryPlane};
 
-/// Particles read at a time, so that a large snapshot never stands whole in memory.
+/// Particles read at a time, so that a large snapshot is never whole in memory.
 const CHUNK: usize = 1 << 20;
 
 /// An open snapshot and its case.
@@ -31,11 +31,11 @@ pub struct Snapshot {
     /// Initial density ρ₀ of each body (kg/m³), of which a particle's mass is `ρ₀ Δp^d`; snapshots
     /// of older versions do not say it.
     densities: Option<Vec<f64>>,
-    /// Which bodies are rigid.
+    /// `true` for rigid bodies.
     pub rigid: Vec<bool>,
     /// Planes of symmetry.
     pub symmetry: Vec<SymmetryPlane>,
-    /// Whether particles may be frozen.
+    /// `true` if particles may be frozen.
     freezes: bool,
 }
 
@@ -142,7 +142,7 @@ impl Snapshot {
         values.into_iter().map(index).collect()
     }
 
-    /// Which of some rows are part of the model still: those that are not frozen. A picture of a
+    /// `true` for rows that are still part of the model: those that are not frozen. A picture of a
     /// run that freezes particles is that of one which removes them.
     pub fn active(&self, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
         if !self.freezes {
@@ -222,7 +222,7 @@ impl Snapshot {
         Ok(bodies.iter().map(mass).collect())
     }
 
-    /// Where each body is and how it moves.
+    /// The position and motion of each body.
     pub fn movers(&self) -> Result<Vec<Mover>, PlotError> {
         let mut movers = vec![Mover::default(); self.bodies.len()];
         let moves = self.has("velocity")?;
@@ -276,7 +276,7 @@ impl Snapshot {
         Ok(nearest)
     }
 
-    /// Whether the snapshot holds a field.
+    /// `true` if the snapshot holds a field.
     pub fn has(&self, field: &str) -> Result<bool, PlotError> {
         Ok(self.file.names()?.iter().any(|name| name == field))
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::PlotError;
 use files::output::h5::read::SnapshotFile;
 
-/// Which snapshots of a run are wanted.
+/// The choice of snapshots of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Wanted {
     /// The last one.
@@ -23,7 +23,7 @@ pub enum Wanted {
 /// A run, or a snapshot alone, and which of its snapshots are drawn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Source {
-    /// Its name where several stand in one picture.
+    /// Its name if several are in one picture.
     pub name: String,
     /// Snapshots in the order of time.
     pub snapshots: Vec<PathBuf>,
@@ -39,35 +39,35 @@ pub fn snapshots(folder: &Path) -> Result<Vec<(f64, PathBuf)>, PlotError> {
     let none = || PlotError::NoSnapshots {
         path: folder.to_owned(),
     };
-    let mut found = Vec::new();
+    let mut times = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|_| none())?.flatten() {
         let path = entry.path();
         // A name with a dot in front is a file that is still being written.
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
         if !hidden && path.extension().is_some_and(|e| e == "vtkhdf") {
-            found.push((SnapshotFile::open(&path)?.time()?, path));
+            times.push((SnapshotFile::open(&path)?.time()?, path));
         }
     }
-    if found.is_empty() {
+    if times.is_empty() {
         return Err(none());
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
-    Ok(found)
+    times.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+    Ok(times)
 }
 
 /// Chooses among snapshots (time, path), at least one, in the order of time; each at most once.
 ///
 /// # Errors
 /// [`PlotError::Index`] if there is no snapshot of some number.
-pub fn choose<T: Clone>(found: &[(f64, T)], wanted: &Wanted) -> Result<Vec<T>, PlotError> {
-    let last = found.len() - 1;
+pub fn choose<T: Clone>(snapshots: &[(f64, T)], wanted: &Wanted) -> Result<Vec<T>, PlotError> {
+    let last = snapshots.len() - 1;
     let mut chosen = match wanted {
         Wanted::Last => vec![last],
         Wanted::All => (0..=last).collect(),
         Wanted::Three => vec![0, last / 2, last],
         Wanted::Times(times) => {
             let nearest = |time: &f64| {
-                let distance = |k: &usize| (found[*k].0 - time).abs();
+                let distance = |k: &usize| (snapshots[*k].0 - time).abs();
                 (0..=last).min_by(|a, b| distance(a).total_cmp(&distance(b)))
             };
             times.iter().filter_map(nearest).collect()
@@ -81,7 +81,7 @@ pub fn choose<T: Clone>(found: &[(f64, T)], wanted: &Wanted) -> Result<Vec<T>, P
     };
     chosen.sort_unstable();
     chosen.dedup();
-    Ok(chosen.into_iter().map(|k| found[k].1.clone()).collect())
+    Ok(chosen.into_iter().map(|k| snapshots[k].1.clone()).collect())
 }
 
 #[cfg(test)]
@@ -90,18 +90,18 @@ mod tests {
 
     #[test]
     fn chooses_by_time_and_index() {
-        let found: Vec<_> = (0..5)
+        let snapshots: Vec<_> = (0..5)
             .map(|k| (f64::from(k), PathBuf::from(k.to_string())))
             .collect();
         let names = |wanted| -> Vec<String> {
-            let chosen = choose(&found, &wanted).unwrap();
+            let chosen = choose(&snapshots, &wanted).unwrap();
             chosen.iter().map(|p| p.display().to_string()).collect()
         };
         assert_eq!(names(Wanted::Last), ["4"]);
         assert_eq!(names(Wanted::Three), ["0", "2", "4"]);
         assert_eq!(names(Wanted::Times(vec![2.4, -1.0, 9.0])), ["0", "2", "4"]);
         assert_eq!(names(Wanted::Indices(vec![3, 1, 3])), ["1", "3"]);
-        let error = choose(&found, &Wanted::Indices(vec![7])).unwrap_err();
+        let error = choose(&snapshots, &Wanted::Indices(vec![7])).unwrap_err();
         assert!(error.to_string().contains("0 to 4"));
     }
 }

@@ -1,15 +1,15 @@
-//! How many sites there are and where, tile by tile where these are whole.
+//! Numbers and coordinates of sites, tile by tile where these are whole.
 
 use super::laid::{Block, Cells, Level, Lie, each};
 use crate::row::Cut;
 use crate::{Share, Site};
 use model::{Vec3, cube};
 
-/// Sites that are told together.
+/// Sites that are counted together.
 enum Piece {
     /// A whole tile, by its place among those of its level.
     Tile(Block),
-    /// What the shape, the cuts and the spacing leave of a block.
+    /// The part of a block that the shape, the cuts and the spacing leave.
     Block(Block),
 }
 
@@ -35,13 +35,13 @@ impl Cells {
         })
     }
 
-    /// How many there are.
+    /// The number of sites.
     pub fn count(&self, cuts: &[Cut]) -> u64 {
         let mut count = 0;
         for piece in self.pieces(cuts) {
             match piece {
                 Piece::Tile(_) => count += self.tile.sites.len() as u64,
-                Piece::Block(block) => self.tell_sites(block, cuts, |_| count += 1),
+                Piece::Block(block) => self.emit_sites(block, cuts, |_| count += 1),
             }
         }
         count
@@ -57,16 +57,16 @@ impl Cells {
                     let size = self.levels[tile.level].spacing / self.lattice.spacing;
                     sum += self.tile.sites.len() as f64 * cube(size, self.dimension);
                 }
-                Piece::Block(block) => self.tell_sites(block, cuts, |site| sum += site.share),
+                Piece::Block(block) => self.emit_sites(block, cuts, |site| sum += site.share),
             }
         }
         sum
     }
 
-    /// Tells them as they stand before they are fitted.
-    pub fn places(&self, cuts: &[Cut], mut tell: impl FnMut(Site)) {
+    /// Passes the sites to `emit` as they are before they are fitted.
+    pub fn emit_unfitted(&self, cuts: &[Cut], mut emit: impl FnMut(Site)) {
         for block in self.all_blocks(cuts) {
-            self.tell_sites(block, cuts, &mut tell);
+            self.emit_sites(block, cuts, &mut emit);
         }
     }
 
@@ -94,7 +94,7 @@ impl Cells {
                     }
                 }
                 Piece::Block(block) => {
-                    self.tell_sites(block, cuts, |site| add(site.position[axis], 1));
+                    self.emit_sites(block, cuts, |site| add(site.position[axis], 1));
                 }
             }
         }

@@ -1,6 +1,5 @@
-//! Glass fitted to the surface of its solid: the sites of the outermost layer stand half a spacing
-//! below the faces, and those beneath make room. Where the spacing is graded, all that is thinned
-//! out comes to rest, too.
+//! Glass fitted to the surface of its solid: the sites of the outermost layer are half a spacing
+//! below the faces, and those beneath make room. Sites of a graded spacing come to rest, too.
 
 use super::forces::{REACH, Sites};
 use super::laid::Cells;
@@ -15,12 +14,12 @@ const MOVING: f64 = 3.0;
 const DEEPEST: f64 = MOVING + REACH + 1.0;
 /// Steps of the relaxation.
 const STEPS: usize = 12;
-/// How far sites move in all steps, at most, for who may feel whom (spacings).
+/// Bound of the motion of sites in all steps, for the choice of neighbours (spacings).
 const SLACK: f64 = 3.6;
 /// Depth of the outermost layer (spacings), and which sites belong to it.
 pub(super) const LAYER: f64 = 0.5;
 const OF_LAYER: f64 = 1.0;
-/// How far sites of the layer that stand too deep are drawn to it in a step.
+/// Motion towards the layer, in a step, of its sites that are too deep.
 const DRAWN: f64 = 0.3;
 
 /// The sites that have moved, by index.
@@ -32,8 +31,8 @@ pub(crate) struct Fitted {
 }
 
 impl Fitted {
-    /// Those that the cuts leave, by where they stood before. What becomes of them hangs on others
-    /// one reach away for each step: sites outside the cuts move as long as that may matter.
+    /// Those that the cuts leave, by their positions before. Their motion depends on others one
+    /// reach away for each step: sites outside the cuts move as long as that may matter.
     pub fn new(cells: &Cells, cuts: &[Cut]) -> Self {
         if !cells.is_fitted() {
             return Self::default();
@@ -49,14 +48,14 @@ impl Fitted {
                 continue;
             }
             for site in cells.sites_of(block, &wide) {
-                let place = site.position.into();
-                let spacing = cells.lattice.spacing_at(&place);
-                if is_near(cells, &place, DEEPEST * spacing) {
+                let position = site.position.into();
+                let spacing = cells.lattice.spacing_at(&position);
+                if is_near(cells, &position, DEEPEST * spacing) {
                     let is_left =
                         |cuts: &Vec<Cut>| cuts.iter().all(|cut| cut.keeps(&site.position));
                     let spared = after.iter().position(is_left);
                     if let Some(spared) = spared
-                        && is_near(cells, &place, MOVING * spacing)
+                        && is_near(cells, &position, MOVING * spacing)
                     {
                         moving.push(Moving {
                             site: u32::try_from(sites.len()).unwrap_or(u32::MAX),
@@ -77,7 +76,7 @@ impl Fitted {
     }
 
     /// Moves a site to where it ends; sites come in the order of their index.
-    pub fn place(&mut self, site: &mut Site) {
+    pub fn fit_site(&mut self, site: &mut Site) {
         let rest = &self.sites[self.next..];
         self.next += rest.iter().take_while(|s| s.index < site.index).count();
         if let Some(moved) = self.sites.get(self.next)
@@ -88,7 +87,7 @@ impl Fitted {
     }
 }
 
-/// What moves: the number of a site, and of how many of the last steps it is spared.
+/// A moving site: its number, and the number of the last steps that it is spared.
 struct Moving {
     site: u32,
     spared: usize,
@@ -104,14 +103,14 @@ fn widened(cuts: &[Cut], steps: usize, spacing: f64) -> Vec<Cut> {
     cuts.iter().map(|cut| cut.widened(far)).collect()
 }
 
-/// Whether a place (m) is nearer than `reach` (m) to the surface, or to where sites are thinned.
-fn is_near(cells: &Cells, place: &Vec3, reach: f64) -> bool {
+/// `true` if a position (m) is nearer than `reach` (m) to the surface, or to thinned sites.
+fn is_near(cells: &Cells, position: &Vec3, reach: f64) -> bool {
     let lattice = &cells.lattice;
     let is_thinned = lattice.grading.is_some_and(|grading| {
-        let distance = grading.from.distance(place) + reach;
+        let distance = grading.from.distance(position) + reach;
         grading.spacing(lattice.spacing, distance) > lattice.spacing
     });
-    is_thinned || cells.distance(place) > -reach
+    is_thinned || cells.distance(position) > -reach
 }
 
 /// Moves sites, of which those that are spared least come first.
@@ -120,16 +119,16 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
     let spacing = |s: &Site| cells.lattice.spacing_at(&s.position.into()) / scale.spacing;
     let largest = (0..cells.levels.len()).map(|level| cells.coarsest(level) / scale.spacing);
     let mut of = Sites {
-        places: sites.iter().map(|s| scale.down(&s.position)).collect(),
+        positions: sites.iter().map(|s| scale.down(&s.position)).collect(),
         sizes: sites.iter().map(spacing).collect(),
         largest: largest.collect(),
     };
     let numbers: Vec<u32> = moving.iter().map(|one| one.site).collect();
     let mut velocity = vec![[0.0; 3]; moving.len()];
     let wall = Wall::new(cells.dimension);
-    let outside = |place: &[f64; 3], size: f64| {
+    let outside = |position: &[f64; 3], size: f64| {
         let mut force = [0.0; 3];
-        scale.faces(cells, place, REACH * size, |depth, normal| {
+        scale.faces(cells, position, REACH * size, |depth, normal| {
             let push = wall.force(depth / size);
             for a in 0..3 {
                 force[a] -= push * normal[a];
@@ -137,14 +136,14 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
         });
         force
     };
-    let hold = |place: &mut [f64; 3], v: &mut [f64; 3], size: f64| {
-        let here = *place;
+    let hold = |position: &mut [f64; 3], v: &mut [f64; 3], size: f64| {
+        let here = *position;
         scale.faces(cells, &here, OF_LAYER * size, |depth, normal| {
             let way = depth - LAYER * size;
             let way = if way < 0.0 { way } else { DRAWN * way };
             let across = v[0] * normal.x + v[1] * normal.y + v[2] * normal.z;
             for a in 0..3 {
-                place[a] += way * normal[a];
+                position[a] += way * normal[a];
                 v[a] -= across * normal[a];
             }
         });
@@ -161,24 +160,24 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
     }
     for i in numbers {
         let i = i as usize;
-        sites[i].position = scale.up(&of.places[i]);
+        sites[i].position = scale.up(&of.positions[i]);
     }
 }
 
-/// Where a site (m) ends, nearly: on the layer, if it begins in it.
-pub(super) fn settled(cells: &Cells, x: &[f64; 3]) -> [f64; 3] {
+/// The approximate end of a site (m): on the layer, if it begins in it.
+pub(super) fn on_layer(cells: &Cells, x: &[f64; 3]) -> [f64; 3] {
     let scale = Scale::of(cells);
     let size = cells.lattice.spacing_at(&(*x).into()) / scale.spacing;
-    let mut place = scale.down(x);
+    let mut position = scale.down(x);
     for _ in 0..2 {
-        let here = place;
+        let here = position;
         scale.faces(cells, &here, OF_LAYER * size, |depth, normal| {
             for a in 0..3 {
-                place[a] += (depth - LAYER * size) * normal[a];
+                position[a] += (depth - LAYER * size) * normal[a];
             }
         });
     }
-    scale.up(&place)
+    scale.up(&position)
 }
 
 /// Lengths in finest spacings from the middle of the solid on.
@@ -210,17 +209,17 @@ impl Scale {
 
     /// Tells the faces less than `reach` above a place, symmetry planes among them: depth, and the
     /// normal out of the solid.
-    fn faces(&self, cells: &Cells, x: &[f64; 3], reach: f64, mut tell: impl FnMut(f64, Vec3)) {
+    fn faces(&self, cells: &Cells, x: &[f64; 3], reach: f64, mut emit: impl FnMut(f64, Vec3)) {
         let x = self.up(x);
         for &(a, at) in &cells.planes {
             let depth = (x[a] - at) / self.spacing;
             if depth < reach {
                 let mut normal = Vec3::zeros();
                 normal[a] = -1.0;
-                tell(depth, normal);
+                emit(depth, normal);
             }
         }
-        let mut scaled = |depth: f64, normal: Vec3| tell(depth / self.spacing, normal);
+        let mut scaled = |depth: f64, normal: Vec3| emit(depth / self.spacing, normal);
         cells
             .solid
             .faces(&x.into(), reach * self.spacing, &mut scaled);

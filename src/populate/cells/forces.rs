@@ -1,8 +1,8 @@
-//! What sites feel of each other: eight receivers that stand together meet all others around them,
-//! one in each lane.
+//! Forces between sites: eight neighbouring receivers meet all others around them, one in each
+//! lane.
 //!
-//! Each lane adds up by itself, in the order of cubes whose faces do not hang on which sites there
-//! are, and what is out of reach adds exactly nothing. So a force has the same bits whichever
+//! Each lane adds up by itself, in the order of cubes whose faces do not depend on which sites
+//! there are, and sites out of reach add exactly nothing. So a force has the same bits whichever
 //! other sites there are farther away, and whichever meet them in the other lanes.
 
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::lanes::{F64x8, LANES, Lanes};
 
-/// How far sites feel each other.
+/// Reach of forces.
 pub(super) const REACH: f64 = 2.2;
 /// Nearer ones are driven apart by a spring, of the stiffness `SPRING`.
 const TOO_NEAR: f64 = 0.8;
@@ -22,12 +22,12 @@ const PARTS: f64 = 4.0;
 const LONGEST_GROUP: i64 = 6;
 /// Groups that a thread takes at a time.
 const TOGETHER: usize = 128;
-/// What is farther away than this part more than the reach certainly feels nothing.
+/// Beyond this share of the reach there is certainly no force.
 const BEYOND: f64 = 1.0 + 1e-9;
 
-/// What is relaxed: places, and the spacing of each, in finest spacings.
+/// The sites to be relaxed: positions, and the spacing of each, in finest spacings.
 pub(super) struct Sites {
-    pub places: Vec<[f64; 3]>,
+    pub positions: Vec<[f64; 3]>,
     pub sizes: Vec<f64>,
     /// The largest spacing of each level, whose sites are at least half as large.
     pub largest: Vec<f64>,
@@ -45,10 +45,10 @@ impl Sites {
         level
     }
 
-    /// What some of them feel from all others, in their order.
+    /// The forces on some of them from all others, in their order.
     pub fn forces(&self, of: &[u32]) -> Vec<[f64; 3]> {
         const NONE: u32 = u32::MAX;
-        let mut wanted = vec![NONE; self.places.len()];
+        let mut wanted = vec![NONE; self.positions.len()];
         for (at, &i) in (0..).zip(of) {
             wanted[i as usize] = at;
         }
@@ -60,18 +60,18 @@ impl Sites {
             let is_wanted = |&n: &u32| wanted[grid.order[n as usize] as usize] != NONE;
             let receivers: Vec<u32> = grid.numbers().filter(is_wanted).collect();
             let groups = grid.groups(&receivers);
-            // What is within reach is less than twice as large, and more than half as large.
+            // Neighbours in reach are less than twice as large, and more than half as large.
             let around = level.saturating_sub(1)..(level + 2).min(grids.len());
             // Each site by itself, so the same bits in any order.
-            let found = groups.par_chunks(TOGETHER).map(|groups| {
+            let of_groups = groups.par_chunks(TOGETHER).map(|groups| {
                 instructions().run(Meet {
                     own: grid,
                     grids: &grids[around.clone()],
                     groups,
                 })
             });
-            let found: Vec<Vec<[F64x8; 3]>> = found.collect();
-            for (group, force) in groups.iter().zip(found.iter().flatten()) {
+            let of_groups: Vec<Vec<[F64x8; 3]>> = of_groups.collect();
+            for (group, force) in groups.iter().zip(of_groups.iter().flatten()) {
                 for (k, &n) in group.iter().enumerate() {
                     let at = wanted[grid.order[n as usize] as usize];
                     forces[at as usize] = [0, 1, 2].map(|a| force[a].0[k]);
@@ -90,9 +90,9 @@ struct Grid {
     first: [i64; 3],
     counts: [usize; 3],
     starts: Vec<u32>,
-    /// Which site it is.
+    /// The number of each site.
     order: Vec<u32>,
-    places: Vec<[f64; 3]>,
+    positions: Vec<[f64; 3]>,
     sizes: Vec<f64>,
 }
 
@@ -111,13 +111,13 @@ impl Grid {
             counts: [0; 3],
             starts: Vec::new(),
             order: vec![0; members.len()],
-            places: vec![[0.0; 3]; members.len()],
+            positions: vec![[0.0; 3]; members.len()],
             sizes: vec![0.0; members.len()],
         };
         let mut last = [i64::MIN; 3];
         let mut parts = Vec::with_capacity(members.len());
         for &i in &members {
-            let at = [0, 1, 2].map(|a| grid.part(a, sites.places[i as usize][a]));
+            let at = [0, 1, 2].map(|a| grid.part(a, sites.positions[i as usize][a]));
             for a in 0..3 {
                 grid.first[a] = grid.first[a].min(at[a]);
                 last[a] = last[a].max(at[a]);
@@ -132,7 +132,7 @@ impl Grid {
             let [i, j, k] = [0, 1, 2].map(|a| (at[a] - grid.first[a]) as usize);
             i + grid.counts[0] * (j + grid.counts[1] * k)
         };
-        // First how many stand in each part, then where each ends, at last where it starts.
+        // First the number in each part, then its end, at last its start.
         let mut starts = vec![0; grid.counts.iter().product::<usize>() + 1];
         for at in &parts {
             starts[number(at)] += 1;
@@ -147,7 +147,7 @@ impl Grid {
             *start -= 1;
             let n = *start as usize;
             grid.order[n] = i;
-            grid.places[n] = sites.places[i as usize];
+            grid.positions[n] = sites.positions[i as usize];
             grid.sizes[n] = sites.sizes[i as usize];
         }
         grid.starts = starts;
@@ -167,9 +167,9 @@ impl Grid {
         0..self.order.len() as u32
     }
 
-    /// Some sites in order by eights that stand together.
+    /// Some sites in order by eights of neighbours.
     fn groups<'a>(&self, numbers: &'a [u32]) -> Vec<&'a [u32]> {
-        let part = |&n: &u32| [0, 1, 2].map(|a| self.part(a, self.places[n as usize][a]));
+        let part = |&n: &u32| [0, 1, 2].map(|a| self.part(a, self.positions[n as usize][a]));
         let mut groups = Vec::with_capacity(numbers.len() / LANES);
         let mut first = 0;
         while first < numbers.len() {
@@ -186,7 +186,7 @@ impl Grid {
         groups
     }
 
-    /// Where the parts of rows along x begin and end that are as near to a box as `reach`.
+    /// The first and last entries of rows along x that are as near to a box as `reach`.
     #[inline(always)]
     #[allow(clippy::cast_sign_loss, clippy::cast_possible_truncation)]
     fn rows_around(&self, [lower, upper]: [[f64; 3]; 2], reach: f64, rows: &mut Vec<[u32; 2]>) {
@@ -226,23 +226,23 @@ impl Vectorised for Meet<'_> {
         let mut rows = Vec::new();
         let mut forces = Vec::with_capacity(self.groups.len());
         for group in self.groups {
-            let mut places = [F64x8([0.0; LANES]); 3];
+            let mut positions = [F64x8([0.0; LANES]); 3];
             let mut sizes = F64x8([0.0; LANES]);
             let (mut lower, mut upper) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
             let mut largest = 0.0_f64;
             for k in 0..LANES {
-                // The last one stands in for those that are missing.
+                // The last one replaces those that are missing.
                 let n = group[k.min(group.len() - 1)] as usize;
-                let place = &self.own.places[n];
+                let position = &self.own.positions[n];
                 for a in 0..3 {
-                    places[a].0[k] = place[a];
-                    lower[a] = lower[a].min(place[a]);
-                    upper[a] = upper[a].max(place[a]);
+                    positions[a].0[k] = position[a];
+                    lower[a] = lower[a].min(position[a]);
+                    upper[a] = upper[a].max(position[a]);
                 }
                 sizes.0[k] = self.own.sizes[n];
                 largest = largest.max(self.own.sizes[n]);
             }
-            let receivers = Receivers::<V>::new(&places, &sizes);
+            let receivers = Receivers::<V>::new(&positions, &sizes);
             let mut sums = [V::splat(0.0); 3];
             for grid in self.grids {
                 let reach = 0.5 * REACH * (largest + grid.largest);
@@ -271,7 +271,7 @@ struct Receivers<V> {
 
 impl<V: Lanes> Receivers<V> {
     #[inline(always)]
-    fn new(places: &[F64x8; 3], sizes: &F64x8) -> Self {
+    fn new(positions: &[F64x8; 3], sizes: &F64x8) -> Self {
         let mut even = sizes.0[0];
         for size in sizes.0 {
             if size != even {
@@ -280,9 +280,9 @@ impl<V: Lanes> Receivers<V> {
         }
         let size = V::load(sizes);
         Self {
-            x: V::load(&places[0]),
-            y: V::load(&places[1]),
-            z: V::load(&places[2]),
+            x: V::load(&positions[0]),
+            y: V::load(&positions[1]),
+            z: V::load(&positions[2]),
             size,
             inverse: V::splat(1.0).div(size),
             even,
@@ -294,10 +294,13 @@ impl<V: Lanes> Receivers<V> {
     fn meet(&self, grid: &Grid, first: usize, end: usize, sums: &mut [V; 3]) {
         let half = V::splat(0.5);
         let reach = V::splat(REACH * BEYOND);
-        for (place, &size) in grid.places[first..end].iter().zip(&grid.sizes[first..end]) {
-            let dx = self.x.sub(V::splat(place[0]));
-            let dy = self.y.sub(V::splat(place[1]));
-            let dz = self.z.sub(V::splat(place[2]));
+        for (position, &size) in grid.positions[first..end]
+            .iter()
+            .zip(&grid.sizes[first..end])
+        {
+            let dx = self.x.sub(V::splat(position[0]));
+            let dy = self.y.sub(V::splat(position[1]));
+            let dz = self.z.sub(V::splat(position[2]));
             let square = dx.mul(dx).add(dy.mul(dy)).add(dz.mul(dz));
             let theirs = V::splat(size);
             let is_even = size == self.even;
@@ -324,8 +327,8 @@ impl<V: Lanes> Receivers<V> {
     }
 }
 
-/// What two sites at a distance feel from each other, over that distance: minus the slope of
-/// `(1 − u)⁴ (1 + 4u)` with u = r/reach (Wendland 1995), and the spring.
+/// The force of two sites at a distance, over that distance: minus the slope of `(1 − u)⁴ (1 + 4u)`
+/// with u = r/reach (Wendland 1995), and the spring.
 #[inline(always)]
 fn push<V: Lanes>(r: V) -> V {
     let (zero, too_near) = (V::splat(0.0), V::splat(TOO_NEAR));

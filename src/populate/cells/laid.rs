@@ -35,7 +35,7 @@ pub(super) struct Level {
     pub spacing: f64,
     /// Beyond all spacings that it fills (m).
     end: f64,
-    /// Where the corner of the first tile lies (m).
+    /// The corner of the first tile (m).
     pub corner: Vec3,
     /// Number of tiles along each axis.
     tiles: [u64; 3],
@@ -137,7 +137,7 @@ impl Cells {
         }
     }
 
-    /// How many indices the tiles of a level take.
+    /// The number of indices of the tiles of a level.
     fn sites_in(&self, level: &Level) -> u64 {
         let tiles = level.tiles.iter().fold(1_u64, |n, &m| n.saturating_mul(m));
         tiles.saturating_mul(self.tile.sites.len() as u64)
@@ -157,12 +157,12 @@ impl Cells {
         levels.fold(0, u64::saturating_add)
     }
 
-    /// Whether sites are moved to fit the surface.
+    /// `true` if sites are moved to fit the surface.
     pub fn is_fitted(&self) -> bool {
         self.tile.is_glass
     }
 
-    /// Whether the spacing grows.
+    /// `true` if the spacing grows.
     pub fn is_graded(&self) -> bool {
         self.lattice.grading.is_some()
     }
@@ -224,8 +224,7 @@ impl Cells {
         [corner(0), corner(1)]
     }
 
-    /// The site of a number in a block's tile: its index and where it stands before it is fitted
-    /// (m).
+    /// The site of a number in a block's tile: its index and its position before it is fitted (m).
     fn site(&self, block: Block, number: usize) -> Site {
         let level = &self.levels[block.level];
         let tile = [0, 1, 2].map(|a| block.at[a] / self.tile.blocks[a]);
@@ -243,7 +242,8 @@ impl Cells {
         }
     }
 
-    /// Whether the site of a number in a tile is one of those that a spacing (m) leaves of a level.
+    /// `true` if the site of a number in a tile is one of those that a spacing (m) leaves of a
+    /// level.
     #[allow(clippy::cast_precision_loss)] // a few thousand
     fn is_left(&self, level: &Level, number: usize, spacing: f64) -> bool {
         let size = level.spacing / spacing;
@@ -258,7 +258,7 @@ impl Cells {
             .numbers([0, 1, 2].map(|a| block.at[a] % self.tile.blocks[a]))
     }
 
-    /// Where the solid, the cuts and the spacing leave a range of blocks of a level.
+    /// The part of a range of blocks of a level that the solid, the cuts and the spacing leave.
     pub(super) fn lie(&self, level: usize, [first, end]: [[u64; 3]; 2], cuts: &[Cut]) -> Lie {
         let (middle, half) = self.middle(level, first, end);
         let reach = half.norm() + FACE * self.lattice.spacing;
@@ -285,7 +285,7 @@ impl Cells {
         }
     }
 
-    /// Whether all sites of a level, none, or some are left as near to a place as `reach` (m).
+    /// The part of the sites of a level that is left as near to a position as `reach` (m).
     fn lie_in_grading(&self, level: &Level, middle: &Vec3, reach: f64) -> Lie {
         let Some(grading) = &self.lattice.grading else {
             return Lie::Inside;
@@ -309,13 +309,13 @@ impl Cells {
 
     /// Its sites before they are fitted, in the order of their index within a block.
     pub(super) fn sites_of(&self, block: Block, cuts: &[Cut]) -> Vec<Site> {
-        let mut found = Vec::new();
-        self.tell_sites(block, cuts, |site| found.push(site));
-        found
+        let mut sites = Vec::new();
+        self.emit_sites(block, cuts, |site| sites.push(site));
+        sites
     }
 
     /// Tells its sites before they are fitted, in the order of their index within a block.
-    pub(super) fn tell_sites(&self, block: Block, cuts: &[Cut], mut tell: impl FnMut(Site)) {
+    pub(super) fn emit_sites(&self, block: Block, cuts: &[Cut], mut emit: impl FnMut(Site)) {
         let lie = self.lie(block.level, [block.at, block.at.map(|n| n + 1)], cuts);
         if lie == Lie::Outside {
             return;
@@ -328,7 +328,7 @@ impl Cells {
                 self.is_left(level, number, spacing) && self.holds(&site.position, cuts)
             };
             if is_one {
-                tell(site);
+                emit(site);
             }
         }
     }
@@ -339,7 +339,7 @@ pub(super) fn each(n: [u64; 3]) -> impl Iterator<Item = [u64; 3]> {
     (0..n[2]).flat_map(move |k| (0..n[1]).flat_map(move |j| (0..n[0]).map(move |i| [i, j, k])))
 }
 
-/// Whether rows of a lattice fill a body.
+/// `true` if rows of a lattice fill a body.
 pub(crate) fn has_rows(body: &Body) -> bool {
     let lattice = &body.lattice;
     match lattice.kind {
@@ -354,7 +354,7 @@ pub(crate) fn has_rows(body: &Body) -> bool {
     }
 }
 
-/// Where a block lies.
+/// The part of a block that is left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Lie {
     Outside,

@@ -1,7 +1,7 @@
-//! Relaxation: sites push each other apart until they stand evenly.
+//! Relaxation: sites push each other apart until they are even.
 //!
-//! Lengths are in finest spacings. What sites feel of each other is the slope of a Wendland function
-//! of their distance over the mean of their spacings, under which they find an even order without
+//! Lengths are in finest spacings. The force between sites is the slope of a Wendland function of
+//! their distance over the mean of their spacings, under which they find an even order without
 //! pairs or layers, with a spring against those that are far too near. Of two sites of unequal
 //! spacings s the coarser one pushes more, by their ratio: where s grows evenly and the number
 //! density is 1/s³, the sum of `f(r/s̄) s_j/s_i` over all directions is zero to the first order in
@@ -11,13 +11,13 @@ use rayon::prelude::*;
 
 use super::forces::{REACH, Sites};
 
-/// What of its motion a site keeps, and how far the unit of force moves it.
+/// The share of its motion that a site keeps, and its motion by the unit of force.
 const KEPT: f64 = 0.7;
 const MOBILITY: f64 = 0.05;
 /// Longest way of a step.
 const LONGEST: f64 = 0.25;
 
-/// What a site feels from all that would stand behind a flat face, by its depth.
+/// The force on a site from a half-space behind a flat face, by its depth.
 #[derive(Debug, Clone)]
 pub(super) struct Wall {
     forces: Vec<f64>,
@@ -72,8 +72,8 @@ impl Wall {
 }
 
 /// One step of those sites that move, whose spacings are given to the functions, too; `outside`
-/// gives what a site feels besides the others, `hold` keeps it where it may be, with the velocity
-/// (spacings) that it keeps.
+/// returns the other forces on a site, `hold` keeps it in its range, with the velocity (spacings)
+/// that it keeps.
 pub(super) fn step(
     sites: &mut Sites,
     velocity: &mut [[f64; 3]],
@@ -87,8 +87,8 @@ pub(super) fn step(
     let states = (moving, &*velocity, &forces).into_par_iter();
     let moved = states.map(|(&i, v, others)| {
         let i = i as usize;
-        let (mut place, size) = (before.places[i], before.sizes[i]);
-        let other = outside(&place, size);
+        let (mut position, size) = (before.positions[i], before.sizes[i]);
+        let other = outside(&position, size);
         let mut v: [f64; 3] =
             std::array::from_fn(|a| KEPT * v[a] + MOBILITY * (others[a] + other[a]));
         let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
@@ -96,14 +96,14 @@ pub(super) fn step(
             v = v.map(|c| c * (LONGEST / length));
         }
         for a in 0..3 {
-            place[a] += v[a] * size;
+            position[a] += v[a] * size;
         }
-        hold(&mut place, &mut v, size);
-        (place, v)
+        hold(&mut position, &mut v, size);
+        (position, v)
     });
     let moved: Vec<([f64; 3], [f64; 3])> = moved.collect();
-    for ((&i, velocity), (place, v)) in moving.iter().zip(velocity).zip(moved) {
-        sites.places[i as usize] = place;
+    for ((&i, velocity), (position, v)) in moving.iter().zip(velocity).zip(moved) {
+        sites.positions[i as usize] = position;
         *velocity = v;
     }
 }

@@ -1,6 +1,6 @@
 //! The sites where a function of place is smallest, block by block.
 
-use super::fit::{LAYER, settled};
+use super::fit::{LAYER, on_layer};
 use super::laid::{Block, Cells};
 use crate::Wanted;
 use crate::parts::{Parts, best};
@@ -37,14 +37,14 @@ impl Parts for Blocks<'_> {
     }
 
     /// Sites that are fitted where they end nearly.
-    fn tell(&self, at: [u64; 3], mut tell: impl FnMut([f64; 3])) {
+    fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
         let block = Block {
             level: self.level,
             at,
         };
         for site in self.cells.sites_of(block, self.cuts) {
-            tell(if self.cells.is_fitted() {
-                settled(self.cells, &site.position)
+            emit(if self.cells.is_fitted() {
+                on_layer(self.cells, &site.position)
             } else {
                 site.position
             });
@@ -60,14 +60,14 @@ pub(crate) fn smallest(
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
-    let mut found: Vec<(f64, [f64; 3])> = Vec::new();
+    let mut nearest: Vec<(f64, [f64; 3])> = Vec::new();
     for level in 0..cells.levels.len() {
         let blocks = Blocks { cells, level, cuts };
-        found.extend(best(&blocks, wanted, &bound, &value));
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.truncate(wanted.most);
+        nearest.extend(best(&blocks, wanted, &bound, &value));
+        nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
+        nearest.truncate(wanted.most);
     }
-    found
+    nearest
 }
 
 /// Smallest and largest coordinates (m) of the sites, if there are any; of those that are fitted to
@@ -78,7 +78,7 @@ pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
         limit: f64::INFINITY,
         any: false,
     };
-    // No site is fitted farther out than its layer: what stands there ends the search.
+    // No site is fitted farther out than its layer: the search ends there.
     let (mut least, mut most) = cells.solid.bounds();
     for &(a, at) in &cells.planes {
         least[a] = least[a].max(at);

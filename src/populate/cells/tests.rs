@@ -16,12 +16,12 @@ use numerics::counter::split_mix;
 use numerics::kernel::Kernel;
 
 mod harmonics;
-mod told;
+mod slabs;
 
 /// Steps in which a tile comes to rest.
 const STEPS: usize = 600;
-/// Where the draws of tiles in the plane and in space begin. Of sixteen starts in space this one
-/// leaves pairs whose directions are as those of random ones.
+/// The first draws of tiles in the plane and in space. Of sixteen starts in space this one leaves
+/// pairs whose directions are as those of random ones.
 const STARTS: [u64; 2] = [18, 1];
 
 /// A tile of glass: sites thrown at random into a periodic box, and relaxed.
@@ -31,11 +31,11 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
     let mut draw = || (split_mix(&mut state) >> 11) as f64 / (1_u64 << 53) as f64 * edge;
     let mut x: Vec<[f64; 3]> = (0..4096)
         .map(|_| {
-            let place = [draw(), draw(), draw()];
+            let point = [draw(), draw(), draw()];
             if dimension == 2 {
-                [place[0], place[1], 0.0]
+                [point[0], point[1], 0.0]
             } else {
-                place
+                point
             }
         })
         .collect();
@@ -51,7 +51,7 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
         add_images(&mut x, edge, dimension);
         let mut sites = Sites {
             sizes: vec![1.0; x.len()],
-            places: std::mem::take(&mut x),
+            positions: std::mem::take(&mut x),
             largest: vec![1.0],
         };
         step(
@@ -61,7 +61,7 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
             |_, _| [0.0; 3],
             |_, _, _| (),
         );
-        x = sites.places;
+        x = sites.positions;
         x.truncate(count);
     }
     ranked(&x, edge, dimension)
@@ -69,7 +69,7 @@ fn made(dimension: usize) -> Vec<[f64; 3]> {
 
 /// Sites in an order of which any first ones are spread evenly: the one that has most others near
 /// it goes last, and so on with the rest, as in dithering by voids and clusters (Ulichney 1993).
-/// How near is measured in spacings of those that are left.
+/// Nearness is measured in spacings of those that are left.
 fn ranked(x: &[[f64; 3]], edge: f64, dimension: usize) -> Vec<[f64; 3]> {
     const WIDTH: f64 = 0.6;
     const WIDER: f64 = 1.02;
@@ -326,8 +326,8 @@ fn the_mass_of_all_particles_is_that_of_the_shape() {
     }
 }
 
-/// Particles of a graded body stand evenly: kernel sums with the mean smoothing length of each pair
-/// are one, all through the grading.
+/// Particles of a graded body are even: kernel sums with the mean smoothing length of each pair are
+/// one, all through the grading.
 #[test]
 fn a_graded_body_is_even() {
     let from = Focus::Point(Vec3::new(0.3, -0.2, 0.1));

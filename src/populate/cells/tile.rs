@@ -1,4 +1,4 @@
-//! What repeats itself: unit cells of crystals, and tiles of glass.
+//! Periodic tiles: unit cells of crystals, and tiles of glass.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,16 +22,16 @@ pub(super) struct Tile {
     pub blocks: [u64; 3],
     /// Sites from the corner on (spacings), block by block.
     pub sites: Vec<Vec3>,
-    /// Which of them stay when fewer are wanted: any first ones of this order are spread evenly.
+    /// The order in which sites stay when fewer are wanted: any first ones are spread evenly.
     pub ranks: Vec<u32>,
-    /// Where those of each block begin.
+    /// The first site of each block.
     starts: Vec<usize>,
-    /// Whether it has no order.
+    /// `true` if it has no order.
     pub is_glass: bool,
 }
 
 impl Tile {
-    /// Of a kind of lattice.
+    /// The tile of a lattice.
     pub fn of(kind: LatticeKind, dimension: usize) -> Cow<'static, Self> {
         if kind == LatticeKind::Glass {
             static TILES: [OnceLock<Tile>; 2] = [OnceLock::new(), OnceLock::new()];
@@ -44,11 +44,11 @@ impl Tile {
     /// A tile of glass from its bytes.
     fn glass(bytes: &[u8], dimension: usize) -> Self {
         let edge = GLASS_EDGES[dimension - 2];
-        let place = |c: &[u8]| f64::from(u16::from_le_bytes([c[0], c[1]])) / 65536.0 * edge;
+        let coordinate = |c: &[u8]| f64::from(u16::from_le_bytes([c[0], c[1]])) / 65536.0 * edge;
         let sites = bytes.chunks_exact(2 * dimension).map(|site| {
             let mut x = Vec3::zeros();
             for (a, c) in site.chunks_exact(2).enumerate() {
-                x[a] = place(c);
+                x[a] = coordinate(c);
             }
             x
         });
@@ -153,8 +153,8 @@ fn scaled(edges: [f64; 3], sites: u32) -> [f64; 3] {
     edges.map(|edge| edge * libm::cbrt(f64::from(sites) / volume))
 }
 
-/// How what has a seed is turned, and moved (tiles): any turn in space (about z in two dimensions)
-/// and any place are as likely.
+/// Random rotation and shift (tiles) of a seed: any rotation in space (about z in two dimensions)
+/// and any shift are as likely.
 pub(crate) fn drawn(seed: u64, dimension: usize) -> (nalgebra::Matrix3<f64>, Vec3) {
     let mut state = seed;
     let mut draw = || {

@@ -98,12 +98,12 @@ proptest! {
             for site in &there {
                 add(&mut walked, site.position[axis], 1);
             }
-            let mut told = Counts::new();
+            let mut tallied = Counts::new();
             for part in 0..parts {
                 let share = Share { part, parts };
-                tally(&body, dimension, &planes, axis, share, |x, n| add(&mut told, x, n));
+                tally(&body, dimension, &planes, axis, share, |x, n| add(&mut tallied, x, n));
             }
-            prop_assert_eq!(&told, &walked, "axis {}", axis);
+            prop_assert_eq!(&tallied, &walked, "axis {}", axis);
         }
     }
 
@@ -113,9 +113,9 @@ proptest! {
         for planes in [&planes[..], &[]] {
             let there: Vec<Site> = sites(&body, dimension, planes, None).collect();
             prop_assert_eq!(count(&body, dimension, planes, None), there.len() as u64);
-            let walked = there.iter().fold(None, |found, site| {
+            let walked = there.iter().fold(None, |bounds, site| {
                 let p = site.position;
-                let (lower, upper) = found.unwrap_or((p, p));
+                let (lower, upper) = bounds.unwrap_or((p, p));
                 Some((
                     std::array::from_fn(|a| f64::min(lower[a], p[a])),
                     std::array::from_fn(|a| f64::max(upper[a], p[a])),
@@ -149,11 +149,11 @@ proptest! {
         let about = (&body, dimension, &planes[..]);
         for most in [1, 5] {
             let wanted = Wanted { most, limit, any: false };
-            let found = search(about, wanted, bound, value);
-            prop_assert_eq!(found.len(), most.min(walked.len()));
-            for ((found, at), walked) in found.iter().zip(&walked) {
-                prop_assert!((found - walked).abs() < 1e-12, "{} {}", found, walked);
-                prop_assert!((value(at) - found).abs() < 1e-15);
+            let nearest = search(about, wanted, bound, value);
+            prop_assert_eq!(nearest.len(), most.min(walked.len()));
+            for ((nearest, at), walked) in nearest.iter().zip(&walked) {
+                prop_assert!((nearest - walked).abs() < 1e-12, "{} {}", nearest, walked);
+                prop_assert!((value(at) - nearest).abs() < 1e-15);
             }
             let any = search(about, Wanted { any: true, ..wanted }, bound, value);
             prop_assert_eq!(any.len(), most.min(walked.len()));
@@ -190,11 +190,11 @@ proptest! {
             let walked = sites(&body, dimension, &planes, None)
                 .map(|site| surface.gap(&site.position, spacing))
                 .fold(f64::INFINITY, f64::min);
-            let found = smallest_gap(&body, dimension, &planes, &surface);
+            let gap = smallest_gap(&body, dimension, &planes, &surface);
             if walked < spacing {
-                prop_assert!((found - walked).abs() < 1e-12, "{} {}", found, walked);
+                prop_assert!((gap - walked).abs() < 1e-12, "{} {}", gap, walked);
             } else {
-                prop_assert!(found >= spacing, "{} {}", found, walked);
+                prop_assert!(gap >= spacing, "{} {}", gap, walked);
             }
         }
     }

@@ -1,4 +1,4 @@
-//! How far bodies in touch are from each other, and what they feel there.
+//! Distances of bodies in touch, and their touching values.
 
 use super::*;
 use numerics::kernel::Kernel;

@@ -11,19 +11,19 @@ const END_64: u32 = 0x0606_4b50;
 const LOCATOR_64: u32 = 0x0706_4b50;
 /// Version of the layout that knows sizes of 64 bits.
 const VERSION: u16 = 45;
-/// First day that the layout can tell: 1 January 1980.
+/// First day of the layout: 1 January 1980.
 const DAY: u16 = 0x0021;
 /// Names are UTF-8.
 const UTF_8: u16 = 1 << 11;
-/// What stands in a short number whose long one follows.
+/// The value of a short number whose long one follows.
 const LONG: u64 = 0xffff_ffff;
-/// Bytes of a local head before the name; the digest stands at byte 14.
+/// Bytes of a local head before the digest.
 const DIGEST_AT: u64 = 14;
 
 struct Entry {
     name: String,
     size: u64,
-    place: u64,
+    offset: u64,
     digest: u32,
 }
 
@@ -49,7 +49,7 @@ impl<'a> Archive<'a> {
         let entry = Entry {
             name: name.to_owned(),
             size,
-            place: self.out.written(),
+            offset: self.out.written(),
             digest: 0,
         };
         let longs: &[u64] = if size >= LONG { &[size, size] } else { &[] };
@@ -75,8 +75,8 @@ impl<'a> Archive<'a> {
             return Ok(());
         };
         entry.digest = digest;
-        let place = entry.place + DIGEST_AT;
-        self.out.replace(place, &digest.to_le_bytes())
+        let offset = entry.offset + DIGEST_AT;
+        self.out.replace(offset, &digest.to_le_bytes())
     }
 
     /// Ends the archive with the list of its entries.
@@ -104,7 +104,8 @@ impl<'a> Archive<'a> {
     }
 }
 
-/// What the head of an entry and its line in the list share; `longs` are numbers that follow.
+/// The common part of the head of an entry and its line in the list; `longs` are numbers that
+/// follow.
 fn common(entry: &Entry, longs: &[u64]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for number in [VERSION, UTF_8, 0, 0, DAY] {
@@ -127,16 +128,16 @@ fn listed(entry: &Entry) -> Vec<u8> {
     if entry.size >= LONG {
         longs.extend([entry.size; 2]);
     }
-    if entry.place >= LONG {
-        longs.push(entry.place);
+    if entry.offset >= LONG {
+        longs.push(entry.offset);
     }
     let mut bytes = CENTRAL.to_le_bytes().to_vec();
     bytes.extend(VERSION.to_le_bytes());
     bytes.extend(common(entry, &longs));
     // Comment, disk and attributes.
     bytes.extend([0; 10]);
-    let place = u32::try_from(entry.place).unwrap_or(u32::MAX);
-    bytes.extend(place.to_le_bytes());
+    let offset = u32::try_from(entry.offset).unwrap_or(u32::MAX);
+    bytes.extend(offset.to_le_bytes());
     bytes.extend(entry.name.bytes());
     bytes.extend(extra(&longs));
     bytes
@@ -156,7 +157,7 @@ fn extra(longs: &[u64]) -> Vec<u8> {
     bytes
 }
 
-/// The end of a long archive, and where it stands.
+/// The end of a long archive, and its offset.
 fn end_64(count: u64, size: u64, first: u64, at: u64) -> Vec<u8> {
     let mut bytes = END_64.to_le_bytes().to_vec();
     bytes.extend(44_u64.to_le_bytes());
@@ -177,13 +178,13 @@ fn end_64(count: u64, size: u64, first: u64, at: u64) -> Vec<u8> {
 mod tests {
     use super::*;
 
-    /// Sizes and places beyond 4 GB stand behind the name, as the short ones say.
+    /// Sizes and offsets beyond 4 GB follow the name, as the short ones say.
     #[test]
     fn large_entries_have_long_numbers() {
         let entry = Entry {
             name: "a.npy".to_owned(),
             size: 5 << 30,
-            place: 6 << 30,
+            offset: 6 << 30,
             digest: 7,
         };
         let bytes = listed(&entry);

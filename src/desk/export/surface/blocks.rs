@@ -11,7 +11,7 @@ use super::Triangle;
 use super::cubes::{self, Cube};
 use super::level::{Ball, CELLS, Coordinates, NODES, Nodes, add, levels, node};
 
-/// Largest number of a block along an axis, so that nodes are told apart.
+/// Largest number of a block along an axis, so that nodes are distinct.
 const FARTHEST: f64 = 1e9;
 /// Most blocks that one particle may reach: those of a ball of some four hundred cells.
 const MOST_BLOCKS: f64 = 2e4;
@@ -37,7 +37,7 @@ impl Blocks {
     /// Sorts balls into blocks of cells with an edge of `pitch` (m).
     ///
     /// # Errors
-    /// What is wrong, if the cells are too small for what they are to show.
+    /// A message, if the cells are too small for the extent of the balls.
     pub fn new(balls: &[Ball], pitch: f64) -> Result<Self, String> {
         let mut spans = Vec::with_capacity(balls.len());
         for ball in balls {
@@ -45,7 +45,7 @@ impl Blocks {
         }
         let mut counts = BTreeMap::new();
         for span in &spans {
-            places(span, |place| *counts.entry(place).or_insert(0) += 1);
+            visit_blocks(span, |key| *counts.entry(key).or_insert(0) += 1);
         }
         let total: usize = counts.values().sum();
         if total > MOST_SHARES * balls.len() + FREE_SHARES {
@@ -53,14 +53,14 @@ impl Blocks {
         }
         let mut end = 0;
         let mut starts = Vec::with_capacity(counts.len());
-        for (place, count) in &mut counts {
-            starts.push((*place, end));
+        for (key, count) in &mut counts {
+            starts.push((*key, end));
             end += std::mem::replace(count, end);
         }
         let mut sorted = vec![0; end];
         for (number, span) in (0..).zip(&spans) {
-            places(span, |place| {
-                if let Some(next) = counts.get_mut(&place) {
+            visit_blocks(span, |key| {
+                if let Some(next) = counts.get_mut(&key) {
                     sorted[*next] = number;
                     *next += 1;
                 }
@@ -73,19 +73,19 @@ impl Blocks {
         })
     }
 
-    /// How many there are.
+    /// The number of blocks.
     pub fn count(&self) -> usize {
         self.starts.len()
     }
 
     /// The surfaces in a block, with the bodies that they are of.
     pub fn triangles(&self, all: &[Ball], block: usize) -> Vec<(u32, Triangle)> {
-        let (place, first) = self.starts[block];
+        let (key, first) = self.starts[block];
         let end = self
             .starts
             .get(block + 1)
             .map_or(self.balls.len(), |next| next.1);
-        let coordinates = self.coordinates(place);
+        let coordinates = self.coordinates(key);
         let mut sums: BTreeMap<u32, Nodes> = BTreeMap::new();
         for &number in &self.balls[first..end] {
             let ball = &all[number as usize];
@@ -106,9 +106,9 @@ impl Blocks {
         triangles
     }
 
-    /// Where the nodes of a block are: the same bits in all blocks that share one.
-    fn coordinates(&self, place: [i32; 3]) -> Coordinates {
-        place.map(|block| {
+    /// Coordinates of the nodes of a block: the same bits in all blocks that share one.
+    fn coordinates(&self, key: [i32; 3]) -> Coordinates {
+        key.map(|block| {
             let node = |n: usize| f64::from(block) * CELLS as f64 + n as f64;
             std::array::from_fn(|n| node(n) * self.pitch)
         })
@@ -116,7 +116,7 @@ impl Blocks {
 }
 
 /// Cuts all cells of a block.
-fn cut(coordinates: &Coordinates, level: &[f64], mut tell: impl FnMut(Triangle)) {
+fn cut(coordinates: &Coordinates, level: &[f64], mut emit: impl FnMut(Triangle)) {
     let [x, y, z] = coordinates;
     for k in 0..CELLS {
         for j in 0..CELLS {
@@ -130,7 +130,7 @@ fn cut(coordinates: &Coordinates, level: &[f64], mut tell: impl FnMut(Triangle))
                     high: [x[i + 1], y[j + 1], z[k + 1]],
                     corners,
                 };
-                cubes::cut(&cube, &mut tell);
+                cubes::cut(&cube, &mut emit);
             }
         }
     }
@@ -158,12 +158,12 @@ fn span(ball: &Ball, pitch: f64) -> Option<Span> {
     (count <= MOST_BLOCKS).then_some(span)
 }
 
-fn places(span: &Span, mut tell: impl FnMut([i32; 3])) {
+fn visit_blocks(span: &Span, mut emit: impl FnMut([i32; 3])) {
     let [x, y, z] = span.map(|[first, last]| first..=last);
     for i in x {
         for j in y.clone() {
             for k in z.clone() {
-                tell([i, j, k]);
+                emit([i, j, k]);
             }
         }
     }
@@ -183,8 +183,8 @@ mod tests {
 
     fn all(balls: &[Ball], pitch: f64) -> Vec<(u32, Triangle)> {
         let blocks = Blocks::new(balls, pitch).unwrap();
-        let found = (0..blocks.count()).flat_map(|block| blocks.triangles(balls, block));
-        found.collect()
+        let triangles = (0..blocks.count()).flat_map(|block| blocks.triangles(balls, block));
+        triangles.collect()
     }
 
     /// Each side of a triangle belongs to one other, which goes the other way along it.

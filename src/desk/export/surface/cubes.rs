@@ -19,7 +19,8 @@ pub struct Cube {
     pub corners: [f64; 8],
 }
 
-/// How near to a corner the surface may cut an edge, as a share of it: so no triangle is without area.
+/// Least distance from a corner to a cut of an edge, as a share of it: so no triangle is without
+/// area.
 const LEAST: f64 = 0.01;
 
 /// Edges by their lower corners and axes; 12 of a cell.
@@ -32,16 +33,16 @@ type Cut = [u8; 3];
 static CUTS: LazyLock<Vec<Vec<Cut>>> = LazyLock::new(|| (0..256).map(cuts).collect());
 
 /// Tells the triangles of the surface in a cell; inside is where the level is not negative.
-pub fn cut(cube: &Cube, mut tell: impl FnMut(Triangle)) {
+pub fn cut(cube: &Cube, mut emit: impl FnMut(Triangle)) {
     let bits = cube.corners.iter().enumerate();
     let inside = bits.fold(0, |sum, (c, level)| sum | usize::from(*level >= 0.0) << c);
     for cut in &CUTS[inside] {
-        tell(cut.map(|edge| cube.crossing(edge.into())));
+        emit(cut.map(|edge| cube.crossing(edge.into())));
     }
 }
 
 impl Cube {
-    /// Where the level is zero on an edge: the same bits in all cells that have it.
+    /// The zero of the level on an edge: the same bits in all cells that have it.
     fn crossing(&self, edge: usize) -> [f64; 3] {
         let (corner, axis) = EDGES[edge];
         let (from, to) = (self.corners[corner], self.corners[corner | 1 << axis]);
@@ -61,13 +62,13 @@ impl Cube {
 
 const fn edges() -> [(usize, usize); 12] {
     let mut edges = [(0, 0); 12];
-    let (mut found, mut corner) = (0, 0);
+    let (mut count, mut corner) = (0, 0);
     while corner < 8 {
         let mut axis = 0;
         while axis < 3 {
             if corner >> axis & 1 == 0 {
-                edges[found] = (corner, axis);
-                found += 1;
+                edges[count] = (corner, axis);
+                count += 1;
             }
             axis += 1;
         }
@@ -79,8 +80,8 @@ const fn edges() -> [(usize, usize); 12] {
 /// The edge between two corners.
 fn edge(a: usize, b: usize) -> u8 {
     let axis = (a ^ b).trailing_zeros() as usize;
-    let found = (0..).zip(EDGES).find(|(_, edge)| *edge == (a & b, axis));
-    found.map_or(0, |(number, _)| number)
+    let edge = (0..).zip(EDGES).find(|(_, edge)| *edge == (a & b, axis));
+    edge.map_or(0, |(number, _)| number)
 }
 
 /// The corners of the faces, each against the clock as seen from outside.
@@ -88,8 +89,8 @@ fn faces() -> [[usize; 4]; 6] {
     std::array::from_fn(|face| {
         let (axis, upper) = (face / 2, face % 2 == 1);
         let (right, up) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
-        let base = if upper { 1 << axis } else { 0 };
-        let mut corners = [base, base | right, base | right | up, base | up];
+        let near = if upper { 1 << axis } else { 0 };
+        let mut corners = [near, near | right, near | right | up, near | up];
         if !upper {
             corners.reverse();
         }
@@ -100,7 +101,7 @@ fn faces() -> [[usize; 4]; 6] {
 /// The triangles where these corners are inside.
 fn cuts(inside: usize) -> Vec<Cut> {
     let is_inside = |corner: usize| inside >> corner & 1 == 1;
-    // Where the surface goes on from an edge that it crosses.
+    // The next edge of the surface after each that it crosses.
     let mut next = [None; 12];
     for face in faces() {
         for k in 0..4 {
@@ -136,7 +137,8 @@ fn cuts(inside: usize) -> Vec<Cut> {
     cuts
 }
 
-/// Triangles that fill a ring of edges, if there are any whose inner sides lie in no face, as is asked.
+/// Triangles that fill a ring of edges, if there are any whose inner sides lie in no face, if
+/// asked.
 fn fill(ring: &[u8], strict: bool) -> Option<Vec<Cut>> {
     let count = ring.len();
     if count <= 3 {
@@ -155,7 +157,7 @@ fn fill(ring: &[u8], strict: bool) -> Option<Vec<Cut>> {
     })
 }
 
-/// Whether two edges belong to the same face.
+/// `true` if two edges belong to the same face.
 fn in_one_face(a: u8, b: u8) -> bool {
     let ends = |edge: u8| {
         let (corner, axis) = EDGES[usize::from(edge)];
@@ -200,10 +202,10 @@ mod tests {
             high: [1.0; 3],
             corners: [1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0, -1.0],
         };
-        let mut found = Vec::new();
-        cut(&cube, |triangle| found.push(triangle));
-        assert_eq!(found.len(), 1);
-        let [a, b, c] = found[0];
+        let mut triangles = Vec::new();
+        cut(&cube, |triangle| triangles.push(triangle));
+        assert_eq!(triangles.len(), 1);
+        let [a, b, c] = triangles[0];
         let (u, v): ([f64; 3], [f64; 3]) = (
             std::array::from_fn(|k| b[k] - a[k]),
             std::array::from_fn(|k| c[k] - a[k]),

@@ -1,4 +1,4 @@
-//! How much of a body there is at the nodes of a block.
+//! The level of a body at the nodes of a block.
 
 use plot::{REACH, weight};
 
@@ -14,7 +14,7 @@ pub struct Ball {
 }
 
 impl Ball {
-    /// How far its weight reaches (m).
+    /// Reach of its weight (m).
     pub fn reach(&self) -> f64 {
         REACH * self.size
     }

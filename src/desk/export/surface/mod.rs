@@ -21,7 +21,7 @@ use super::ExportError;
 use super::frame::{Frame, Wish};
 use blocks::Blocks;
 use level::Ball;
-use plot::{Bodies, Matter, Shown};
+use plot::{Bodies, Drawn, Selection};
 
 /// Corners (m) of a triangle, which turn against the clock as seen from outside.
 pub type Triangle = [[f64; 3]; 3];
@@ -42,26 +42,26 @@ pub fn surfaces(frame: &Frame, wish: &Wish) -> Result<Vec<Vec<Triangle>>, Export
     let balls = balls(frame, wish.mirror)?;
     let blocks = Blocks::new(&balls, pitch).map_err(|reason| frame.wrong(reason))?;
     let bodies = frame.snapshot.bodies.len();
-    let found: Vec<Vec<(u32, Triangle)>> = (0..blocks.count())
+    let of_blocks: Vec<Vec<(u32, Triangle)>> = (0..blocks.count())
         .into_par_iter()
         .map(|block| blocks.triangles(&balls, block))
         .collect();
     let mut surfaces = vec![Vec::new(); bodies];
-    for (body, triangle) in found.into_iter().flatten() {
+    for (body, triangle) in of_blocks.into_iter().flatten() {
         surfaces[body as usize].push(triangle);
     }
     Ok(surfaces)
 }
 
-/// What fills space: all particles that are part of the model still, and their images.
+/// The balls that fill space: all particles that are still part of the model, and their images.
 fn balls(frame: &Frame, mirror: bool) -> Result<Vec<Ball>, ExportError> {
     let snapshot = &frame.snapshot;
-    let matter = Matter {
+    let selection = Selection {
         bodies: Bodies::default(),
-        shown: Shown::Body,
+        drawn: Drawn::Body,
         mirror,
     };
-    let mirrors = matter.mirrors(snapshot);
+    let mirrors = selection.mirrors(snapshot);
     let copies = (0..mirrors.planes().count()).fold(1, |copies: u64, _| copies.saturating_mul(2));
     let rows = copies.saturating_mul(snapshot.file.particles() as u64);
     if rows > MOST {
@@ -71,7 +71,7 @@ fn balls(frame: &Frame, mirror: bool) -> Result<Vec<Ball>, ExportError> {
     let numbers: Vec<usize> = (0..snapshot.bodies.len()).collect();
     let (mut balls, mut images) = (Vec::new(), Vec::new());
     for rows in snapshot.chunks() {
-        let grains = matter.grains(snapshot, &numbers, rows)?;
+        let grains = selection.grains(snapshot, &numbers, rows)?;
         for grain in grains.iter().filter(|grain| grain.size > 0.0) {
             mirrors.reflect(&grain.point, &mut images);
             balls.extend(images.iter().map(|image| Ball {

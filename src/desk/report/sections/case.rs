@@ -1,13 +1,13 @@
-//! What was simulated: bodies, materials, spacing, contact, planes.
+//! The simulated case: bodies, materials, spacing, contact, planes.
 
 use std::collections::BTreeMap;
 
-use crate::report::found::{Rows, Run, in_words};
 use crate::report::html::{Html, list, missing, note, swatch, table, table_of_texts};
+use crate::report::run_files::{Rows, Run, in_words};
 use plot::colour_of;
 
 /// Tells the case.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn render(run: &Run) -> Result<Html, String> {
     let case = run.case.as_ref().map_err(Clone::clone)?;
     let mut page = list(facts(run, case));
     page.push(bodies(run));
@@ -23,7 +23,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
     Ok(page)
 }
 
-/// What is told of the whole case, in a line each.
+/// Facts of the whole case, in a line each.
 fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
     let words = |key: &str| case.get(key).map(in_words);
     let inside = |table: &str, key: &str| Some(in_words(case.get(table)?.get(key)?));
@@ -36,8 +36,9 @@ fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
         ("contact", words("contact")),
         ("end time", inside("run", "end_time")),
     ];
-    let told = facts.into_iter();
-    told.filter_map(|(name, value)| Some((name, value?)))
+    let entries = facts.into_iter();
+    entries
+        .filter_map(|(name, value)| Some((name, value?)))
         .collect()
 }
 
@@ -55,7 +56,7 @@ fn bodies(run: &Run) -> Html {
         let of_bodies = counted
             .as_ref()
             .ok()
-            .and_then(|found| found.get(&name).cloned());
+            .and_then(|table| table.get(&name).cloned());
         let [particles, mass] = of_bodies.unwrap_or_else(|| ["–".to_owned(), "–".to_owned()]);
         let texts = [
             word("material"),
@@ -98,7 +99,7 @@ fn counted(run: &Run) -> Result<BTreeMap<String, [String; 2]>, String> {
     let [time, body] = [rows.column("time")?, rows.column("body")?];
     let first = rows.like(0, time);
     let entry = |row: usize| {
-        let cells = ["particles", "mass"].map(|name| rows.shown(row, name));
+        let cells = ["particles", "mass"].map(|name| rows.cell(row, name));
         (rows.text(row, body).to_owned(), cells)
     };
     Ok(first.map(entry).collect())

@@ -1,12 +1,12 @@
 //! The ledger of contact, by pair of bodies.
 
-use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
 use plot::{Columns, Tables};
 
-/// Draws the forces, and tells what each pair has come to.
-pub fn tell(run: &Run) -> Result<Html, String> {
+/// Draws the forces, and lists the last state of each pair.
+pub fn render(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.contacts())?;
     let [a, b] = [rows.column("body_a")?, rows.column("body_b")?];
     let mut pairs: Vec<[&str; 2]> = Vec::new();
@@ -16,7 +16,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
             pairs.push(pair);
         }
     }
-    let told = pairs.iter().map(|pair| {
+    let cells = pairs.iter().map(|pair| {
         let is_of = |row: &usize| [rows.text(*row, a), rows.text(*row, b)] == *pair;
         let own: Vec<usize> = (0..rows.len()).filter(is_of).collect();
         of_pair(&rows, *pair, &own)
@@ -30,7 +30,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
         "closest pair, spacings",
         "touching at the end",
     ];
-    let table = table_of_texts(&head, told.collect::<Vec<_>>());
+    let table = table_of_texts(&head, cells.collect::<Vec<_>>());
     let drawn = Tables {
         title: run.title().to_owned(),
         tables: vec![(run.name.clone(), run.folder.contacts())],
@@ -55,7 +55,7 @@ fn of_pair(rows: &Rows, [a, b]: [&str; 2], own: &[usize]) -> Vec<String> {
             return "–".to_owned();
         };
         let all = own.iter().map(|&row| rows.number(row, column));
-        told(
+        with_unit(
             all.fold(worst, better),
             rows.unit(column).trim_matches(|c| c == '-'),
         )
@@ -64,10 +64,10 @@ fn of_pair(rows: &Rows, [a, b]: [&str; 2], own: &[usize]) -> Vec<String> {
     vec![
         format!("{a} – {b}"),
         extreme("peak_force", f64::max, f64::NEG_INFINITY),
-        rows.shown_vector(last, "impulse"),
-        rows.shown(last, "heat"),
-        rows.shown(last, "contact_energy"),
+        rows.vector(last, "impulse"),
+        rows.cell(last, "heat"),
+        rows.cell(last, "contact_energy"),
         closest.trim_end_matches(" spacings").to_owned(),
-        rows.shown(last, "touching"),
+        rows.cell(last, "touching"),
     ]
 }

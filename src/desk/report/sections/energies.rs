@@ -1,12 +1,12 @@
 //! Energies over time.
 
-use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
 use plot::History;
 
-/// Columns of the history that are told at the start and at the end.
-const TOLD: [&str; 6] = [
+/// Columns of the history that are listed at the start and at the end.
+const COLUMNS: [&str; 6] = [
     "kinetic_energy",
     "internal_energy",
     "contact_energy",
@@ -15,8 +15,8 @@ const TOLD: [&str; 6] = [
     "total_energy",
 ];
 
-/// Draws and tells the energies.
-pub fn tell(run: &Run) -> Result<Html, String> {
+/// Draws and lists the energies.
+pub fn render(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.history())?;
     let table = (String::new(), run.folder.history());
     let drawn = History::Energies.chart(&[table], run.title());
@@ -24,9 +24,9 @@ pub fn tell(run: &Run) -> Result<Html, String> {
         drawn.map_err(|error| run.without_path(&error)),
         "Kinetic, internal, contact and total energy over time",
     );
-    let known = TOLD.iter().filter(|name| rows.column(name).is_ok());
+    let known = COLUMNS.iter().filter(|name| rows.column(name).is_ok());
     let row = |name: &&str| {
-        let ends = [0, rows.len() - 1].map(|row| rows.shown(row, name));
+        let ends = [0, rows.len() - 1].map(|row| rows.cell(row, name));
         let [first, last] = ends;
         vec![name.replace('_', " "), first, last]
     };

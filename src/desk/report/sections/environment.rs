@@ -1,10 +1,10 @@
 //! With what and on what the run was made.
 
-use crate::report::found::{Run, figure_in_words};
 use crate::report::html::{Html, list};
+use crate::report::run_files::{Run, figure_in_words};
 
-/// Figures of the summary that tell it, in this order, and what they are called.
-const TOLD: [(&str, &str); 12] = [
+/// Figures of the summary that describe it, in this order, and their names.
+const FIGURES: [(&str, &str); 12] = [
     ("version", "whipple"),
     ("commit", "commit"),
     ("mpi", "MPI"),
@@ -23,11 +23,11 @@ const TOLD: [(&str, &str); 12] = [
 ];
 
 /// Tells the environment.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn render(run: &Run) -> Result<Html, String> {
     run.summary.as_ref().map_err(Clone::clone)?;
-    let told = TOLD.iter();
+    let known = FIGURES.iter();
     let entry = |(key, name): &(&'static str, &'static str)| {
         Some((*name, figure_in_words(run.figure(key)?)))
     };
-    Ok(list(told.filter_map(entry)))
+    Ok(list(known.filter_map(entry)))
 }

@@ -1,10 +1,10 @@
-//! All figures of the summary, for those who look for one.
+//! All figures of the summary.
 
-use crate::report::found::{Run, figure_in_words};
 use crate::report::html::{Html, table_of_texts};
+use crate::report::run_files::{Run, figure_in_words};
 
 /// Tells them all.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn render(run: &Run) -> Result<Html, String> {
     let summary = run.summary.as_ref().map_err(Clone::clone)?;
     let row =
         |(key, value): (&String, &serde_json::Value)| vec![key.clone(), figure_in_words(value)];

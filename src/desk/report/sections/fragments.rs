@@ -1,16 +1,16 @@
-//! What hangs together at the end.
+//! The fragments at the end.
 
-use crate::report::found::{Rows, Run};
-use crate::report::html::{Html, note, or_untold, table_of_texts};
+use crate::report::html::{Html, note, or_reason, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
 use plot::{By, cumulative};
 
 /// Fragments that are listed.
 const LISTED: usize = 12;
 
-/// Tells the fragments of the run's own tables, else what `whipple fragments` tells of its last snapshot, or
-/// why it does not.
-pub fn tell(run: &Run, of_snapshot: &Result<String, String>) -> Result<Html, String> {
+/// Renders the fragments of the run's own tables, else the output of `whipple fragments` for its
+/// last snapshot, or its error.
+pub fn render(run: &Run, of_snapshot: &Result<String, String>) -> Result<Html, String> {
     if !run.folder.fragments().exists() {
         let text = of_snapshot
             .as_ref()
@@ -36,15 +36,15 @@ pub fn tell(run: &Run, of_snapshot: &Result<String, String>) -> Result<Html, Str
     ];
     let times = spread(rows.len()).into_iter();
     let row = |row: usize| {
-        let mut cells = vec![rows.shown(row, "time")];
-        cells.extend(named.map(|name| rows.shown(row, name)));
+        let mut cells = vec![rows.cell(row, "time")];
+        cells.extend(named.map(|name| rows.cell(row, name)));
         cells
     };
     let mut head = vec!["time"];
     let words = named.map(|name| name.replace('_', " "));
     head.extend(words.iter().map(String::as_str));
     let mut page = table_of_texts(&head, times.map(row));
-    page.push(or_untold(heaviest(run)));
+    page.push(or_reason(heaviest(run)));
     Ok(page)
 }
 
@@ -69,8 +69,8 @@ fn heaviest(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&path)?;
     let named = ["copies", "particles", "mass", "diameter", "temperature"];
     let row = |row: usize| {
-        let mut cells = named.map(|name| rows.shown(row, name)).to_vec();
-        cells.insert(4, rows.shown_vector(row, "velocity"));
+        let mut cells = named.map(|name| rows.cell(row, name)).to_vec();
+        cells.insert(4, rows.vector(row, "velocity"));
         cells
     };
     let head = [

@@ -1,13 +1,13 @@
-//! How evenly the ranks were loaded, and where the time went.
+//! The balance of the ranks, and the time of each phase.
 
-use crate::report::found::{Rows, Run};
-use crate::report::html::{Html, bar, missing, note, or_untold, table};
+use crate::report::html::{Html, bar, missing, note, or_reason, table};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run};
 use plot::{Columns, History, Tables};
 
 /// Tells load and time.
-pub fn tell(run: &Run) -> Html {
-    or_untold(balance(run)).then(phases(run))
+pub fn render(run: &Run) -> Html {
+    or_reason(balance(run)).then(phases(run))
 }
 
 /// The load of the busiest rank.
@@ -38,13 +38,13 @@ fn balance(run: &Run) -> Result<Html, String> {
         ));
         let last = rows.len() - 1;
         let [work, particles] =
-            ["work_imbalance", "particle_imbalance"].map(|name| rows.shown(last, name));
+            ["work_imbalance", "particle_imbalance"].map(|name| rows.cell(last, name));
         page.push(note(&format!(
             "At the end the busiest rank has {work} times the mean work and {particles} times the mean \
              number of particles; 1 is even. Ranks without particles: {}. Messages: {}, of {} MB.",
-            rows.shown(last, "empty_ranks"),
-            rows.shown(last, "messages"),
-            rows.shown(last, "megabytes_sent").trim_end_matches(" MB"),
+            rows.cell(last, "empty_ranks"),
+            rows.cell(last, "messages"),
+            rows.cell(last, "megabytes_sent").trim_end_matches(" MB"),
         )));
     } else {
         page.push(note("One rank: nothing to share out."));

@@ -1,16 +1,16 @@
-//! What the run has measured of itself: bodies, and what the case's measures tell.
+//! The measurements of the run: bodies, and the case's measures.
 
 use std::path::Path;
 
-use crate::report::found::{Rows, Run, told};
-use crate::report::html::{Html, missing, note, or_untold, table_of_texts};
+use crate::report::html::{Html, missing, note, or_reason, table_of_texts};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
 use plot::{Wanted, distributions};
 
 /// Tells the measures at their last time.
-pub fn tell(run: &Run) -> Html {
+pub fn render(run: &Run) -> Html {
     let mut page = Html::of("h3", "Bodies at the end");
-    page.push(or_untold(bodies(run)));
+    page.push(or_reason(bodies(run)));
     page.push(Html::of("h3", "Measures of the case"));
     if !run.folder.measures().exists() {
         page.push(missing(
@@ -18,11 +18,11 @@ pub fn tell(run: &Run) -> Html {
         ));
         return page;
     }
-    page.push(or_untold(figures(&run.folder.measures())));
+    page.push(or_reason(figures(&run.folder.measures())));
     let tables = [(run.name.clone(), run.folder.distributions())];
     if run.folder.distributions().exists() {
-        let told = |time| told(time, "s");
-        match distributions(&tables, &Wanted::Last, run.title(), told) {
+        let with_unit = |time| with_unit(time, "s");
+        match distributions(&tables, &Wanted::Last, run.title(), with_unit) {
             Ok(charts) => {
                 let drawn = charts.into_iter();
                 let draw = |(name, drawn): (String, _)| chart(Ok(drawn), &name.replace('_', " "));
@@ -34,7 +34,7 @@ pub fn tell(run: &Run) -> Html {
     page
 }
 
-/// What there is of each body at the last time.
+/// The table of bodies at the last time.
 fn bodies(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.bodies())?;
     let [time, body] = [rows.column("time")?, rows.column("body")?];
@@ -47,8 +47,8 @@ fn bodies(run: &Run) -> Result<Html, String> {
     ];
     let row = |row: usize| {
         let mut cells = vec![rows.text(row, body).to_owned()];
-        cells.extend(single.map(|name| rows.shown(row, name)));
-        cells.insert(3, rows.shown_vector(row, "velocity"));
+        cells.extend(single.map(|name| rows.cell(row, name)));
+        cells.insert(3, rows.vector(row, "velocity"));
         cells
     };
     let head = [
@@ -60,7 +60,7 @@ fn bodies(run: &Run) -> Result<Html, String> {
         "internal energy",
         "failed mass",
     ];
-    let at = rows.shown(rows.len() - 1, "time");
+    let at = rows.cell(rows.len() - 1, "time");
     let table = table_of_texts(&head, rows.like_last(time).map(row));
     Ok(table.then(note(&format!(
         "At {at}, of the whole model with its mirror images."
@@ -79,15 +79,15 @@ fn figures(path: &Path) -> Result<Html, String> {
         "uncertainty",
         "unit",
     ];
-    let mut places = [0; 7];
-    for (place, name) in places.iter_mut().zip(names) {
-        *place = rows.column(name)?;
+    let mut columns = [0; 7];
+    for (column, name) in columns.iter_mut().zip(names) {
+        *column = rows.column(name)?;
     }
-    let [time, measure, kind, figure, value, uncertainty, unit] = places;
-    let shown = |row: usize, column: usize| {
+    let [time, measure, kind, figure, value, uncertainty, unit] = columns;
+    let text = |row: usize, column: usize| {
         let unit = rows.text(row, unit);
         match rows.text(row, column).parse::<f64>() {
-            Ok(number) => told(number, unit),
+            Ok(number) => with_unit(number, unit),
             Err(_) => rows.text(row, column).replace('_', " "),
         }
     };
@@ -96,12 +96,12 @@ fn figures(path: &Path) -> Result<Html, String> {
             rows.text(row, measure).to_owned(),
             rows.text(row, kind).replace('_', " "),
             rows.text(row, figure).replace('_', " "),
-            shown(row, value),
-            shown(row, uncertainty),
+            text(row, value),
+            text(row, uncertainty),
         ]
     };
     let head = ["measure", "of", "figure", "value", "uncertainty ±"];
-    let at = rows.shown(rows.len() - 1, "time");
+    let at = rows.cell(rows.len() - 1, "time");
     let table = table_of_texts(&head, rows.like_last(time).map(row));
     Ok(table.then(note(&format!("At {at}; – where there is nothing to tell."))))
 }

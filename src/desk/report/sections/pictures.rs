@@ -2,23 +2,23 @@
 
 use std::path::PathBuf;
 
-use crate::report::found::Run;
 use crate::report::html::Html;
 use crate::report::picture::image;
+use crate::report::run_files::Run;
 use plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
 
 /// Draws the sections of snapshots in the order of time: by body, and by pressure where it is known.
-pub fn tell(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {
-    let told = |error: PlotError| run.without_path(&error);
-    let three = choose(snapshots, &Wanted::Three).map_err(told)?;
-    let last = choose(snapshots, &Wanted::Last).map_err(told)?;
+pub fn render(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {
+    let without_path = |error: PlotError| run.without_path(&error);
+    let three = choose(snapshots, &Wanted::Three).map_err(without_path)?;
+    let last = choose(snapshots, &Wanted::Last).map_err(without_path)?;
     let mut page = Html::default();
     let panels = pictures(run, three, None, None);
     // All show one section.
     let section = panels.as_ref().ok().map(Pictures::section);
     let panels = panels.and_then(|pictures| pictures.panels(None));
     page.push(image(
-        panels.map_err(told),
+        panels.map_err(without_path),
         "Sections at the first, a middle and the last snapshot, by body",
     ));
     for (field, alt) in [(None, "by body"), (Some("pressure"), "by pressure")] {
@@ -34,7 +34,7 @@ pub fn tell(run: &Run, snapshots: &[(f64, PathBuf)]) -> Result<Html, String> {
         let unknown = matches!(drawn, Err(PlotError::Field { .. }));
         if !unknown {
             page.push(image(
-                drawn.map_err(told),
+                drawn.map_err(without_path),
                 &format!("Section of the last snapshot, {alt}"),
             ));
         }

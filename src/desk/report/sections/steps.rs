@@ -1,14 +1,14 @@
-//! How time went on: the steps, and what chose them.
+//! The steps, and the reasons for their sizes.
 
 use std::collections::BTreeMap;
 
-use crate::report::found::{Rows, Run, told};
 use crate::report::html::{Html, note, swatch, table};
 use crate::report::picture::chart;
+use crate::report::run_files::{Rows, Run, with_unit};
 use plot::{Columns, Tables, colour_of, hex};
 
 /// Draws the steps over time, with what chose them.
-pub fn tell(run: &Run) -> Result<Html, String> {
+pub fn render(run: &Run) -> Result<Html, String> {
     let rows = Rows::read(&run.folder.history())?;
     let [time, dt, reason] = [
         rows.column("time")?,
@@ -68,7 +68,7 @@ pub fn tell(run: &Run) -> Result<Html, String> {
     Ok(page)
 }
 
-/// What a reason means, see the book's page on time integration.
+/// The meaning of a reason, see the book's page on time integration.
 fn meaning(reason: &str) -> &'static str {
     let known = BTreeMap::from([
         ("sound", "sound crosses a smoothing length (“courant”)"),
@@ -96,8 +96,8 @@ fn row(k: usize, reason: &str, taken: &[(f64, f64, &str)]) -> Vec<Html> {
     vec![
         swatch(colour_of(k)).then(Html::of("span", reason)),
         Html::text(&lengths.len().to_string()),
-        Html::text(&told(shortest, "s")),
-        Html::text(&told(longest, "s")),
+        Html::text(&with_unit(shortest, "s")),
+        Html::text(&with_unit(longest, "s")),
         Html::text(meaning(reason)),
     ]
 }
@@ -137,6 +137,6 @@ fn strip(taken: &[(f64, f64, &str)], reasons: &[&str]) -> Html {
             "What chose the time step, along time; the table below says it in words",
         ),
     ];
-    let ends = format!("What chose the step, from 0 to {}:", told(end, "s"));
+    let ends = format!("What chose the step, from 0 to {}:", with_unit(end, "s"));
     note(&ends).then(Html::element("svg", &attributes, bars))
 }

@@ -1,24 +1,24 @@
-//! What the run's figures are worth: each against the bound that the book names.
+//! Verdict on the run's figures: each against the bound that the book names.
 
-use crate::report::found::{Rows, Run};
 use crate::report::html::{Html, missing, note, table};
+use crate::report::run_files::{Rows, Run};
 use files::output::Phase;
 use model::readable::short;
 
-/// How a figure stands to its bound.
+/// A figure against its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Standing {
+enum Outcome {
     Within,
     Beyond,
-    Untold,
+    Unknown,
 }
 
-impl Standing {
+impl Outcome {
     fn of(holds: Option<bool>) -> Self {
         match holds {
             Some(true) => Self::Within,
             Some(false) => Self::Beyond,
-            None => Self::Untold,
+            None => Self::Unknown,
         }
     }
 
@@ -27,7 +27,7 @@ impl Standing {
         let (class, word) = match self {
             Self::Within => ("badge within", "✓ within"),
             Self::Beyond => ("badge beyond", "✗ beyond"),
-            Self::Untold => ("badge untold", "– not told"),
+            Self::Unknown => ("badge untold", "– not told"),
         };
         Html::element("span", &[("class", class)], Html::text(word))
     }
@@ -39,7 +39,7 @@ struct Check {
     value: String,
     bound: &'static str,
     source: &'static str,
-    standing: Standing,
+    outcome: Outcome,
 }
 
 /// The bound of a figure of the summary: the largest that it may be.
@@ -47,7 +47,7 @@ struct Bound {
     key: &'static str,
     what: &'static str,
     most: f64,
-    /// Whether people read it in percent.
+    /// `true` if it is printed in percent.
     percent: bool,
     words: &'static str,
     source: &'static str,
@@ -58,7 +58,7 @@ const CONTACT: &str = "book, Contact: the contact defect";
 const OUTPUT: &str = "book, Output: summary.json";
 const LAWS: &str = "book, Laws: nothing is lost in silence";
 
-/// What the book holds runs to.
+/// The bounds of the book.
 const BOUNDS: [Bound; 8] = [
     Bound {
         key: "energy_error_max",
@@ -127,7 +127,7 @@ const BOUNDS: [Bound; 8] = [
 ];
 
 /// Tells the verdict.
-pub fn tell(run: &Run) -> Html {
+pub fn render(run: &Run) -> Html {
     let mut checks: Vec<Check> = vec![ended(run)];
     let applies = |bound: &&Bound| {
         bound.key != "absorbing_zones.yielded_mass" || run.figure(bound.key).is_some()
@@ -141,7 +141,7 @@ pub fn tell(run: &Run) -> Html {
     }
     let row = |check: &Check| {
         vec![
-            check.standing.badge(),
+            check.outcome.badge(),
             Html::text(check.what),
             Html::element("span", &[("class", "figure")], Html::text(&check.value)),
             Html::text(check.bound),
@@ -168,28 +168,24 @@ pub fn tell(run: &Run) -> Html {
 
 /// One sentence in colour and words.
 fn headline(checks: &[Check]) -> Html {
-    let of = |standing: Standing| {
-        checks
-            .iter()
-            .filter(move |check| check.standing == standing)
-    };
-    let told = checks.len() - of(Standing::Untold).count();
-    let beyond: Vec<&str> = of(Standing::Beyond).map(|check| check.what).collect();
-    let untold = match of(Standing::Untold).count() {
+    let of = |outcome: Outcome| checks.iter().filter(move |check| check.outcome == outcome);
+    let known = checks.len() - of(Outcome::Unknown).count();
+    let beyond: Vec<&str> = of(Outcome::Beyond).map(|check| check.what).collect();
+    let unknown = match of(Outcome::Unknown).count() {
         0 => String::new(),
         count => format!(" Not told: {count}."),
     };
     let (class, text) = if !beyond.is_empty() {
         let text = format!(
-            "✗ Look closer: {} of {told} figures beyond their bounds: {}.{untold}",
+            "✗ Look closer: {} of {known} figures beyond their bounds: {}.{unknown}",
             beyond.len(),
             beyond.join(", ")
         );
         ("verdict beyond", text)
-    } else if told > 1 {
+    } else if known > 1 {
         (
             "verdict within",
-            format!("✓ Sound: all {told} figures are within their bounds.{untold}"),
+            format!("✓ Sound: all {known} figures are within their bounds.{unknown}"),
         )
     } else {
         (
@@ -200,7 +196,7 @@ fn headline(checks: &[Check]) -> Html {
     Html::element("p", &[("class", class)], Html::text(&text))
 }
 
-/// Whether the run has come to its end.
+/// The check that the run has come to its end.
 fn ended(run: &Run) -> Check {
     let status = run.status.as_ref().ok();
     let value = status.map_or("–".to_owned(), |status| match &status.reason {
@@ -212,7 +208,7 @@ fn ended(run: &Run) -> Check {
         value,
         bound: "finished",
         source: "book, Output: status.json",
-        standing: Standing::of(status.map(|status| status.state == Phase::Finished)),
+        outcome: Outcome::of(status.map(|status| status.state == Phase::Finished)),
     }
 }
 
@@ -228,8 +224,8 @@ fn size(value: &serde_json::Value) -> Option<f64> {
 }
 
 fn check(run: &Run, bound: &Bound) -> Check {
-    let found = run.figure(bound.key).and_then(size);
-    let value = found.map_or("–".to_owned(), |value| {
+    let computed = run.figure(bound.key).and_then(size);
+    let value = computed.map_or("–".to_owned(), |value| {
         if bound.percent {
             format!("{} %", short(100.0 * value))
         } else {
@@ -241,7 +237,7 @@ fn check(run: &Run, bound: &Bound) -> Check {
         value,
         bound: bound.words,
         source: bound.source,
-        standing: Standing::of(found.map(|value| value <= bound.most)),
+        outcome: Outcome::of(computed.map(|value| value <= bound.most)),
     }
 }
 
@@ -264,7 +260,7 @@ fn nearest(run: &Run) -> Check {
         value: value.trim_end().to_owned(),
         bound: "≥ 0.28 spacings",
         source: OUTPUT,
-        standing: Standing::of(closest.map(|closest| closest >= 0.28)),
+        outcome: Outcome::of(closest.map(|closest| closest >= 0.28)),
     }
 }
 
@@ -278,7 +274,7 @@ fn mass(run: &Run) -> Check {
             .map_or_else(|reason| format!("– ({reason})"), |defect| short(*defect)),
         bound: "≤ 1e-12: round-off of a sum, as of momentum",
         source: LAWS,
-        standing: Standing::of(defect.ok().map(|defect| defect <= 1e-12)),
+        outcome: Outcome::of(defect.ok().map(|defect| defect <= 1e-12)),
     }
 }
 
@@ -292,7 +288,7 @@ fn mass_defect(run: &Run) -> Result<f64, String> {
         sum(&mut bodies.like(0, time)),
         sum(&mut bodies.like_last(time)),
     ];
-    // Rows of what has gone stand at more times than those of bodies.
+    // Rows of particles that have left exist at more times than those of bodies.
     let now = bodies.text(bodies.len() - 1, time);
     let gone = |path: std::path::PathBuf| -> Result<f64, String> {
         if !path.exists() {
@@ -308,7 +304,7 @@ fn mass_defect(run: &Run) -> Result<f64, String> {
         Ok(masses.into_iter().sum())
     };
     let gone = gone(run.folder.removed())? + gone(run.folder.departed())?;
-    // Bodies are told with all images, what has gone is that of what was computed.
+    // Bodies are listed with all images, particles that have left without.
     let defect = (last + run.copies() * gone - first).abs() / first;
     defect
         .is_finite()
@@ -321,11 +317,12 @@ mod tests {
     use super::*;
     use files::output::RunFolder;
 
-    /// Bodies are told less often than what has gone, so a run that is stopped or goes on has rows of that alone.
+    /// Bodies are written less often than particles that have left: a run that is stopped or goes
+    /// on has times of those alone.
     #[test]
     fn masses_of_one_time_are_added_up() {
-        let place = tempfile::tempdir().unwrap();
-        let folder = RunFolder::at(place.path());
+        let dir = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(dir.path());
         let bodies = "time,body,mass\n0.0,a,4.0\n0.0,b,2.0\n0.5,a,3.0\n0.5,b,2.0\n";
         std::fs::write(folder.bodies(), bodies).unwrap();
         let removed = "time,body,mass\n0.0,a,0.0\n0.0,b,0.0\n0.5,a,0.75\n0.5,b,0.0\n\

@@ -1,4 +1,4 @@
-//! Which particles and snapshots a viewer shows: the same ones of the same run.
+//! The particles and snapshots of a viewer: the same ones of the same run.
 
 /// The particles that are kept of many: those whose ids, well mixed, are among the smallest.
 #[derive(Debug, Clone, Copy)]
@@ -18,7 +18,7 @@ impl Chosen {
         if total <= most {
             return Self { limit: u64::MAX };
         }
-        // How many there are scatters by the root of their number.
+        // Their number scatters by its root.
         let wanted = most as f64 - 4.0 * (most as f64).sqrt();
         let share = wanted.max(0.5 * most as f64) / total as f64;
         Self {
@@ -26,7 +26,7 @@ impl Chosen {
         }
     }
 
-    /// Whether the particle of an id is kept.
+    /// `true` if the particle of an id is kept.
     pub fn keeps(self, id: u64) -> bool {
         mixed(id) <= self.limit
     }
@@ -66,8 +66,11 @@ mod tests {
         };
         assert_eq!(kept(1000, 1000), 1000);
         for most in [1000, 5000, 50_000] {
-            let found = kept(most, 100_000);
-            assert!(found <= most && 5 * found >= 4 * most, "{found} of {most}");
+            let number = kept(most, 100_000);
+            assert!(
+                number <= most && 5 * number >= 4 * most,
+                "{number} of {most}"
+            );
         }
     }
 

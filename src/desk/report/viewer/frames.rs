@@ -14,9 +14,9 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::chosen::Chosen;
-use plot::{PlotError, Shown, Snapshot};
+use plot::{Drawn, PlotError, Snapshot};
 
-/// What is kept of a snapshot.
+/// The kept data of a snapshot.
 #[derive(Debug, Default)]
 pub struct Kept {
     /// Time (s).
@@ -37,7 +37,7 @@ impl Kept {
     /// Reads a snapshot: what is chosen of it and is part of the model still, at most so many.
     pub fn read(
         snapshot: &Snapshot,
-        fields: &[Shown],
+        fields: &[Drawn],
         chosen: Chosen,
         most: usize,
     ) -> Result<Self, PlotError> {
@@ -53,7 +53,7 @@ impl Kept {
             } else {
                 rows.clone().map(|row| row as f64).collect()
             };
-            let bears = Shown::Body.bearers(snapshot, rows.clone())?;
+            let bears = Drawn::Body.bearers(snapshot, rows.clone())?;
             let points = snapshot.file.points(rows.clone())?;
             let bodies = snapshot.body_of(rows.clone())?;
             let sizes = snapshot.sizes(rows.clone(), &bodies)?;
@@ -89,12 +89,13 @@ impl Kept {
     /// Ends of the places along each axis (m); without a share of the particles at each.
     pub fn ends(&self, without: f64) -> Ends {
         [0, 1, 2].map(|axis| {
-            let mut places: Vec<f64> = self.positions.iter().map(|point| point[axis]).collect();
-            let Some(last) = places.len().checked_sub(1) else {
+            let mut coordinates: Vec<f64> =
+                self.positions.iter().map(|point| point[axis]).collect();
+            let Some(last) = coordinates.len().checked_sub(1) else {
                 return [0.0; 2];
             };
             let cut = part(without * last as f64);
-            [cut, last - cut].map(|k| *places.select_nth_unstable_by(k, f64::total_cmp).1)
+            [cut, last - cut].map(|k| *coordinates.select_nth_unstable_by(k, f64::total_cmp).1)
         })
     }
 }
@@ -126,9 +127,9 @@ impl Frame {
             let width = (high - low).max(f64::MIN_POSITIVE);
             let mut before = 0_u16;
             let difference = |point: &[f64; 3]| {
-                let place = sixteen((point[axis] - low) / width);
-                let difference = place.wrapping_sub(before);
-                before = place;
+                let coordinate = sixteen((point[axis] - low) / width);
+                let difference = coordinate.wrapping_sub(before);
+                before = coordinate;
                 difference.to_be_bytes()
             };
             let all: Vec<[u8; 2]> = kept.positions.iter().map(difference).collect();
@@ -188,8 +189,8 @@ fn single(value: f64) -> f32 {
     clippy::cast_sign_loss,
     reason = "a small share of a length"
 )]
-fn part(places: f64) -> usize {
-    places as usize
+fn part(coordinates: f64) -> usize {
+    coordinates as usize
 }
 
 /// A share in 65535ths.

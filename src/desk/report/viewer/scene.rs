@@ -6,7 +6,7 @@ use super::chosen::{Chosen, spread};
 use super::frames::{Ends, Frame, Kept};
 use model::readable::Readable;
 use model::{Axis, SymmetryPlane};
-use plot::{PlotError, Rgb, Scale, Shown, Snapshot, colour_of, decimals, hex};
+use plot::{Drawn, PlotError, Rgb, Scale, Snapshot, colour_of, decimals, hex};
 
 /// Fields that may be coloured by, as far as snapshots have them.
 const FIELDS: [&str; 6] = [
@@ -49,7 +49,7 @@ pub struct Field {
     range: [f64; 2],
 }
 
-/// What a viewer shows.
+/// The data of a viewer.
 #[derive(Debug)]
 pub struct Scene {
     /// Dimensions of the model.
@@ -67,11 +67,11 @@ pub struct Scene {
     pub reach: f64,
     /// Edge of the largest particle (m).
     pub size: f64,
-    /// How many times as large particles are drawn, since some are left out.
+    /// Size of particles in pictures over the true one, since some are left out.
     pub enlarge: f64,
     /// Unit of lengths.
     pub unit: Readable,
-    /// Where the camera stands at first (rad).
+    /// The first direction of the camera (rad).
     pub yaw: f64,
     /// Most particles that a frame shows, and that it would show if none were left out.
     pub kept: usize,
@@ -90,21 +90,21 @@ impl Scene {
         room: usize,
     ) -> Result<Self, PlotError> {
         let first = Snapshot::open(&snapshots[0].1)?;
-        let shown = shown(&first)?;
+        let drawn = drawn(&first)?;
         let rows = most_particles(snapshots)?;
         let most = particles.min(MOST_PARTICLES);
         let chosen = Chosen::new(most, rows);
         // A guess on the safe side: a place takes six bytes that hardly pack, and base64 a third more.
-        let each = (4 * (6 + shown.len()) / 3 + 1) * most.min(rows);
+        let each = (4 * (6 + drawn.len()) / 3 + 1) * most.min(rows);
         let wanted = frames.unwrap_or((room / each.max(1)).clamp(2, MOST_FRAMES));
-        let read = |k: usize| Kept::read(&Snapshot::open(&snapshots[k].1)?, &shown, chosen, most);
+        let read = |k: usize| Kept::read(&Snapshot::open(&snapshots[k].1)?, &drawn, chosen, most);
         let all: Result<Vec<Kept>, _> = spread(snapshots.len(), wanted)
             .into_iter()
             .map(read)
             .collect();
         let all = all?;
         let ends: Vec<Ends> = all.iter().map(|kept| kept.ends(0.0)).collect();
-        let mut scene = Self::shared(&first, &shown, &all, &ends);
+        let mut scene = Self::shared(&first, &drawn, &all, &ends);
         let ranges: Vec<[f64; 2]> = scene.fields.iter().map(|field| field.range).collect();
         scene.frames = all
             .iter()
@@ -117,8 +117,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// What all frames share.
-    fn shared(first: &Snapshot, shown: &[Shown], all: &[Kept], ends: &[Ends]) -> Self {
+    /// The common data of all frames.
+    fn shared(first: &Snapshot, drawn: &[Drawn], all: &[Kept], ends: &[Ends]) -> Self {
         let kept = all.iter().map(|kept| kept.bodies.len()).max().unwrap_or(0);
         let total = all.iter().map(|kept| kept.whole).max().unwrap_or(0);
         let sizes = all.iter().flat_map(|kept| &kept.sizes);
@@ -128,9 +128,9 @@ impl Scene {
             name: name.clone(),
             colour: colour_of(k),
         };
-        let field = |(k, shown): (usize, &Shown)| match shown {
-            Shown::Body => None,
-            Shown::Field(field) => {
+        let field = |(k, drawn): (usize, &Drawn)| match drawn {
+            Drawn::Body => None,
+            Drawn::Field(field) => {
                 let values = all.iter().flat_map(|kept| &kept.values[k]);
                 let scale = Scale::new(values.map(|&value| f64::from(value)), None);
                 Some(Field::new(&field.label, &field.unit, &scale))
@@ -139,7 +139,7 @@ impl Scene {
         Self {
             dimension: first.dimension,
             bodies: first.bodies.iter().enumerate().map(shade).collect(),
-            fields: shown.iter().enumerate().filter_map(field).collect(),
+            fields: drawn.iter().enumerate().filter_map(field).collect(),
             mirrors: first.symmetry.clone(),
             reach: reach(ends, [lower, upper], &first.symmetry),
             lower,
@@ -163,9 +163,9 @@ impl Scene {
                 .rev()
                 .find(|&n| n as f64 <= share * self.frames.len() as f64);
             let keep = spread(self.frames.len(), fits.unwrap_or(2).max(2));
-            let mut place = 0..;
+            let mut slot = 0..;
             self.frames
-                .retain(|_| place.next().is_some_and(|k| keep.contains(&k)));
+                .retain(|_| slot.next().is_some_and(|k| keep.contains(&k)));
         }
     }
 }
@@ -194,13 +194,13 @@ impl Field {
     }
 }
 
-/// The fields that the first snapshot has. Stress points bear theirs apart from the particles, so that of such
-/// a model only the velocity is shown.
-fn shown(first: &Snapshot) -> Result<Vec<Shown>, PlotError> {
+/// The fields of the first snapshot. Stress points have theirs apart from the particles: of such a
+/// model only the velocity is drawn.
+fn drawn(first: &Snapshot) -> Result<Vec<Drawn>, PlotError> {
     let points = first.has("stress_mass")?;
     let names = FIELDS.iter().filter(|name| !points || **name == "velocity");
     Ok(names
-        .filter_map(|name| Shown::find(first, name).ok())
+        .filter_map(|name| Drawn::find(first, name).ok())
         .collect())
 }
 

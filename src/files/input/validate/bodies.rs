@@ -17,7 +17,7 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{AngularVelocityParams, BodyParams, ShapeParams};
 use crate::input::source::Diagnostic;
 use material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use model::{Body, Form, Lattice, LatticeKind, Motion, Profile, Shape, Solid, SymmetryPlane, Vec3};
+use model::{Body, Primitive, Lattice, LatticeKind, Motion, Profile, Shape, Solid, SymmetryPlane, Vec3};
 use populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
@@ -159,7 +159,7 @@ impl Reader<'_> {
                     spacing: own.unwrap_or(mean),
                     ..Lattice::default()
                 };
-                if let Shape::Solid(Solid::Form(Form::Cloud(cloud), _)) = &shape {
+                if let Shape::Solid(Solid::Primitive(Primitive::Cloud(cloud), _)) = &shape {
                     lattice.sizes = cloud.sizes();
                 }
                 Ok((shape, lattice))

@@ -18,7 +18,7 @@ use crate::input::source::Diagnostic;
 use asked::{columns, parts};
 use material::Material;
 use model::{
-    Cloud, Form, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
+    Cloud, Primitive, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
 };
 
 /// What a body is made with.
@@ -61,9 +61,9 @@ impl Files<'_> {
             )));
         }
         let cloud = Cloud::new(file, self.dimension, positions, volumes, rows.columns);
-        let form = Form::Cloud(Arc::new(cloud));
+        let form = Primitive::Cloud(Arc::new(cloud));
         let place = Placement::at(Vec3::zeros());
-        Ok((Shape::Solid(Solid::Form(form, place)), mean))
+        Ok((Shape::Solid(Solid::Primitive(form, place)), mean))
     }
 
     /// Reads the file, which must be the one that the case began with.

@@ -9,7 +9,7 @@ use crate::input::schema::{
     AxisParams, BoxParams, CylinderParams, Point, ShapeParams, SphereParams,
 };
 use crate::input::source::Diagnostic;
-use model::{Axis, Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use model::{Axis, Primitive, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// What the shape of one body is read with.
 pub struct Shapes<'a> {
@@ -90,9 +90,9 @@ pub fn normalised(key: &str, vector: &[f64], dimension: usize) -> Result<[f64; 3
 }
 
 /// A form about z in its place: turned so that its axis points along a unit vector.
-pub fn placed(form: Form, axis: &Vec3, centre: Vec3) -> Shape {
+pub fn placed(form: Primitive, axis: &Vec3, centre: Vec3) -> Shape {
     let place = Placement::turned(onto(axis), centre);
-    Shape::Solid(Solid::Form(form, place))
+    Shape::Solid(Solid::Primitive(form, place))
 }
 
 /// The matrix that turns z into a unit vector.
@@ -249,7 +249,7 @@ impl Shapes<'_> {
             [inner, half],
         ];
         let profile = Polygon::new(outline).expect("a rectangle");
-        Ok(placed(Form::Revolved(profile), &axis, centre))
+        Ok(placed(Primitive::Revolved(profile), &axis, centre))
     }
 
     pub(super) fn positive(&self, value: &Spanned<Extent>, key: &str) -> Result<f64, Diagnostic> {

@@ -10,7 +10,7 @@ use crate::input::schema::{
 };
 use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
-use model::{Form, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use model::{Primitive, Placement, Polygon, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
@@ -29,7 +29,7 @@ impl Shapes<'_> {
             semi.z = f64::INFINITY;
         }
         let place = Placement::at(centre);
-        Ok(Shape::Solid(Solid::Form(Form::Ellipsoid(semi), place)))
+        Ok(Shape::Solid(Solid::Primitive(Primitive::Ellipsoid(semi), place)))
     }
 
     pub(super) fn cone(&self, table: &Spanned<ConeParams>) -> Result<Shape, Diagnostic> {
@@ -47,7 +47,7 @@ impl Shapes<'_> {
         }
         let profile = Polygon::new(outline).expect("a triangle or a trapezium");
         let axis = axis_vector(params.axis.as_ref())?;
-        Ok(placed(Form::Revolved(profile), &axis, centre))
+        Ok(placed(Primitive::Revolved(profile), &axis, centre))
     }
 
     pub(super) fn ogive(&self, table: &Spanned<OgiveParams>) -> Result<Shape, Diagnostic> {
@@ -67,7 +67,7 @@ impl Shapes<'_> {
             return Err(Diagnostic::new(params.length.span(), title));
         }
         let axis = axis_vector(params.axis.as_ref())?;
-        let form = Form::Ogive {
+        let form = Primitive::Ogive {
             radius,
             arc: (radius * radius + nose * nose) / (2.0 * radius),
             nose,
@@ -88,7 +88,7 @@ impl Shapes<'_> {
         }
         let centre = self.point(params.centre.as_ref(), "centre")?;
         let axis = axis_vector(params.axis.as_ref())?;
-        Ok(placed(Form::Torus { radius, tube }, &axis, centre))
+        Ok(placed(Primitive::Torus { radius, tube }, &axis, centre))
     }
 
     pub(super) fn prism(&self, table: &Spanned<PrismParams>) -> Result<Shape, Diagnostic> {
@@ -127,7 +127,7 @@ impl Shapes<'_> {
             let title = "in two dimensions a prism has no `axis`";
             return Err(Diagnostic::new(given.span(), title));
         }
-        Ok(placed(Form::Prism { section, half }, &axis, centre))
+        Ok(placed(Primitive::Prism { section, half }, &axis, centre))
     }
 
     pub(super) fn stl(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
@@ -144,9 +144,9 @@ impl Shapes<'_> {
             spacing: self.spacing,
             what: "body",
         };
-        let mesh = Form::Mesh(reader.read(table, format)?);
+        let mesh = Primitive::Mesh(reader.read(table, format)?);
         let place = Placement::at(Vec3::zeros());
-        Ok(Shape::Solid(Solid::Form(mesh, place)))
+        Ok(Shape::Solid(Solid::Primitive(mesh, place)))
     }
 
     pub(super) fn union(&self, parts: &Parts) -> Result<Shape, Diagnostic> {

@@ -1,4 +1,4 @@
-//! What is mended, and what is not.
+//! Defects that are mended, and others.
 
 use super::*;
 use crate::Mesh;
@@ -8,7 +8,7 @@ type Triangles = Vec<Triangle>;
 
 /// A torus about z with a tube of a third of its radius, of 2 `n` by `n` quads.
 fn torus(n: u32, radius: f64) -> Triangles {
-    let place = |i: u32, j: u32| {
+    let corner = |i: u32, j: u32| {
         let turn = |k: u32, of: u32| std::f64::consts::TAU * f64::from(k % of) / f64::from(of);
         let (u, v) = (turn(i, 2 * n), turn(j, n));
         let r = radius * (1.0 + libm::cos(v) / 3.0);
@@ -21,7 +21,7 @@ fn torus(n: u32, radius: f64) -> Triangles {
     let quads = (0..2 * n).flat_map(|i| (0..n).map(move |j| (i, j)));
     let triangles = quads.flat_map(|(i, j)| {
         let [a, b, c, d] =
-            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| place(i, j));
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
         [[a, b, c], [a, c, d]]
     });
     triangles.collect()
@@ -63,13 +63,13 @@ fn corners_a_hair_apart_are_joined() {
     assert!(Mesh::new(&torn).is_err());
     let mesh = Mesh::mend(&torn, 0.01).unwrap();
     assert!((mesh.volume() / volume - 1.0).abs() < 2e-6);
-    let told = mesh.mended().words().unwrap();
+    let words = mesh.mended().words().unwrap();
     assert!(
-        told.contains("corners joined across gaps of up to"),
-        "{told}"
+        words.contains("corners joined across gaps of up to"),
+        "{words}"
     );
-    assert_eq!(mesh.mended().holes, 0, "{told}");
-    assert!(mesh.mended().joined.1 < 1e-6, "{told}");
+    assert_eq!(mesh.mended().holes, 0, "{words}");
+    assert!(mesh.mended().joined.1 < 1e-6, "{words}");
 }
 
 #[test]
@@ -110,11 +110,11 @@ fn small_holes_are_closed_and_wide_ones_told_with_their_place() {
     let mesh = Mesh::mend(&holed, 0.06).unwrap();
     assert_eq!(mesh.mended().holes, 2);
     assert!((mesh.volume() / volume - 1.0).abs() < 1e-4);
-    let told = mesh.mended().words().unwrap();
-    assert!(told.starts_with("2 holes closed, the widest "), "{told}");
+    let words = mesh.mended().words().unwrap();
+    assert!(words.starts_with("2 holes closed, the widest "), "{words}");
     let gone = sound[300][0];
     let near = minus(&mesh.mended().widest.1, &gone);
-    assert!(dot(&near, &near) < 0.1 * 0.1, "{told}");
+    assert!(dot(&near, &near) < 0.1 * 0.1, "{words}");
 
     let error = Mesh::mend(&holed, 0.01).unwrap_err().to_string();
     assert!(
@@ -193,7 +193,7 @@ fn shells_are_turned_as_they_nest() {
         assert!(mesh.distance(&[1.5, 0.0, 0.0]) < 0.0);
         assert!(mesh.distance(&[3.5; 3]) < 0.0);
     }
-    // A whole file inside out is nothing to tell.
+    // A whole file inside out needs no report.
     let mesh = Mesh::mend(&turned(&outer), 0.1).unwrap();
     assert_eq!(mesh.mended().words(), None);
     assert!((mesh.volume() - 64.0).abs() < 1e-12);
@@ -225,7 +225,7 @@ fn volumes_above_planes_are_those_of_what_is_left() {
         ([0.0, 0.0, 1.0], 0.05),
     ];
     for used in 1..=3 {
-        let told = mesh.volume_above(&planes[..used]);
+        let computed = mesh.volume_above(&planes[..used]);
         let cells = 120_u32;
         let edge = 2.8 / f64::from(cells);
         let mut counted = 0.0;
@@ -241,8 +241,8 @@ fn volumes_above_planes_are_those_of_what_is_left() {
             }
         }
         assert!(
-            (told / counted - 1.0).abs() < 0.02,
-            "{used}: {told} for {counted}"
+            (computed / counted - 1.0).abs() < 0.02,
+            "{used}: {computed} for {counted}"
         );
     }
 }

@@ -3,7 +3,7 @@
 
 use super::*;
 
-/// Pairs nearer than this are told (spacings).
+/// Largest distance of pairs (spacings).
 const NEAR: f64 = 1.3;
 
 /// `Q_l² = 4π/(2l+1) Σ_m |⟨Y_lm⟩|²` of directions for l = 4 and 6: the mean of `P_l` over all pairs of
@@ -81,12 +81,12 @@ fn pairs_of_lattices_have_directions() {
         (LatticeKind::Hexagonal, [0.0972, 0.4848]),
     ] {
         let tile = Tile::of(kind, 3);
-        let found = invariants(&near_pairs(&tile.sites, &tile.edges)).map(f64::sqrt);
-        println!("{kind:?}: Q4 {}, Q6 {}", found[0], found[1]);
-        for (found, expected) in found.iter().zip(expected) {
+        let computed = invariants(&near_pairs(&tile.sites, &tile.edges)).map(f64::sqrt);
+        println!("{kind:?}: Q4 {}, Q6 {}", computed[0], computed[1]);
+        for (computed, expected) in computed.iter().zip(expected) {
             assert!(
-                (found - expected).abs() < 1e-3,
-                "{kind:?}: {found} {expected}"
+                (computed - expected).abs() < 1e-3,
+                "{kind:?}: {computed} {expected}"
             );
         }
     }

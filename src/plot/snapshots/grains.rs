@@ -1,44 +1,44 @@
-//! The matter that a picture of a whole model shows, some rows of a snapshot at a time.
+//! The particles in a picture of a whole model, some rows of a snapshot at a time.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::bodies::Bodies;
-use super::field::Shown;
+use super::field::Drawn;
 use super::images::Mirrors;
-use super::slice::{mirrored, place};
+use super::slice::{mirrored, position_text};
 use super::snapshot::Snapshot;
 use crate::PlotError;
 
 /// Particles that one task takes.
 pub const PORTION: usize = 8192;
 
-/// A particle that is shown.
+/// A particle that is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grain {
-    /// Where (m).
+    /// Position (m).
     pub point: [f64; 3],
     /// Its size s, the spacing of the volume that it has now (m).
     pub size: f64,
     /// Number of its body in the picture.
     pub body: usize,
-    /// The shown number in its own unit; that of a body is 0.
+    /// The drawn number in its own unit; that of a body is 0.
     pub value: f64,
 }
 
-/// What of snapshots is shown.
+/// The bodies and the quantity that are drawn.
 #[derive(Debug)]
-pub struct Wanted {
+pub struct Selection {
     /// The bodies.
     pub bodies: Bodies,
     /// The number of each particle.
-    pub shown: Shown,
-    /// Whether to reflect the model at its planes of symmetry.
+    pub drawn: Drawn,
+    /// `true` to reflect the model at its planes of symmetry.
     pub mirror: bool,
 }
 
-impl Wanted {
+impl Selection {
     /// The planes at which a snapshot is reflected.
     pub fn mirrors(&self, snapshot: &Snapshot) -> Mirrors {
         let planes = if self.mirror {
@@ -46,15 +46,15 @@ impl Wanted {
         } else {
             Vec::new()
         };
-        Mirrors::new(planes, &self.shown)
+        Mirrors::new(planes, &self.drawn)
     }
 
-    /// `"mirrored at x = 0 and y = 0"`, and which bodies alone are shown, if not all.
+    /// `"mirrored at x = 0 and y = 0"`, and the bodies that alone are drawn, if not all.
     pub fn caption(&self, snapshot: &Snapshot) -> String {
         let mirrors = self.mirrors(snapshot);
         let planes = mirrors
             .planes()
-            .map(|plane| place(plane.axis.name(), plane.position, snapshot.finest()));
+            .map(|plane| position_text(plane.axis.name(), plane.position, snapshot.finest()));
         let mirrored = mirrored(planes);
         let alone = self
             .bodies
@@ -64,8 +64,8 @@ impl Wanted {
         texts.join(",  ")
     }
 
-    /// Particles of some rows that are shown: those of its bodies that bear the number, at places
-    /// that are known; `numbers` are those of the snapshot's bodies.
+    /// Particles of some rows that are drawn: those of its bodies that have the number, at finite
+    /// positions; `numbers` are those of the snapshot's bodies.
     ///
     /// # Errors
     /// [`PlotError::Read`] if the snapshot cannot be read.
@@ -75,15 +75,15 @@ impl Wanted {
         numbers: &[usize],
         rows: Range<usize>,
     ) -> Result<Vec<Grain>, PlotError> {
-        let values = self.shown.values(snapshot, rows.clone())?;
+        let values = self.drawn.values(snapshot, rows.clone())?;
         self.bearing(snapshot, numbers, rows, &values)
     }
 
     /// The same with their masses (kg) as values.
     ///
     /// # Errors
-    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it does not
-    /// tell masses.
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if it has no
+    /// masses.
     pub fn masses(
         &self,
         snapshot: &Snapshot,
@@ -104,12 +104,12 @@ impl Wanted {
         let points = snapshot.file.points(rows.clone())?;
         let bodies = snapshot.body_of(rows.clone())?;
         let sizes = snapshot.sizes(rows.clone(), &bodies)?;
-        let bearers = self.shown.bearers(snapshot, rows)?;
-        let is_shown: Vec<bool> = numbers.iter().map(|&n| self.bodies.shows(n)).collect();
+        let bearers = self.drawn.bearers(snapshot, rows)?;
+        let is_drawn: Vec<bool> = numbers.iter().map(|&n| self.bodies.shows(n)).collect();
         let grain = |k: usize| {
             let (point, body) = (points[k], bodies[k]);
             let known = point.iter().all(|c| c.is_finite());
-            (bearers[k] && is_shown[body] && known).then(|| Grain {
+            (bearers[k] && is_drawn[body] && known).then(|| Grain {
                 point,
                 size: sizes[k],
                 body: numbers[body],

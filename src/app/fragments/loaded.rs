@@ -1,4 +1,4 @@
-//! The matter of a snapshot.
+//! The particles of a snapshot.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub struct Loaded {
     pub symmetry: Vec<SymmetryPlane>,
     /// The case's own rule.
     pub options: Option<FragmentOptions>,
-    /// What cannot be told.
+    /// The quantities that are unknown, and why.
     pub missing: Option<String>,
     ids: Vec<u64>,
     body: Vec<u32>,
@@ -46,12 +46,12 @@ impl Reader<'_> {
 
     /// An attribute of JSON.
     fn json<T: serde::de::DeserializeOwned>(&self, name: &str) -> Result<T, FragmentsError> {
-        let text = self.told(self.file.attribute("/whipple", name))?;
+        let text = self.converted(self.file.attribute("/whipple", name))?;
         let value = serde_json::from_str(&text);
         value.map_err(|e| self.wrong(format!("attribute {name} of /whipple: {e}")))
     }
 
-    fn told<T>(&self, result: Result<T, ReadError>) -> Result<T, FragmentsError> {
+    fn converted<T>(&self, result: Result<T, ReadError>) -> Result<T, FragmentsError> {
         result.map_err(|error| match error {
             ReadError::Open(error) => error.into(),
             ReadError::Layout { .. } => self.wrong(error.to_string()),
@@ -68,15 +68,15 @@ impl Reader<'_> {
         if !self.has(field) {
             return Ok(vec![0.0; count * components]);
         }
-        let found = self.told(self.file.components(field))?;
-        if found != components {
-            return Err(self.wrong(format!("its field {field} has {found} components")));
+        let actual = self.converted(self.file.components(field))?;
+        if actual != components {
+            return Err(self.wrong(format!("its field {field} has {actual} components")));
         }
-        self.told(self.file.values(field, 0..count))
+        self.converted(self.file.values(field, 0..count))
     }
 
     fn dimension(&self) -> Result<usize, FragmentsError> {
-        let dimension = self.told(self.file.number("/whipple", "dimension"))?;
+        let dimension = self.converted(self.file.number("/whipple", "dimension"))?;
         let known = (1..=3).find(|&d| d as u64 == dimension);
         known.ok_or_else(|| self.wrong(format!("it is a model of {dimension} dimensions")))
     }
@@ -91,7 +91,7 @@ impl Reader<'_> {
         planes.into_iter().map(plane).collect()
     }
 
-    /// How large the particles of each body are at the start.
+    /// Sizes of the particles of each body at the start.
     fn first_sizes(&self, bodies: usize) -> Result<Vec<FirstSizes>, FragmentsError> {
         let list = |name: &str| {
             let values: Vec<f64> = self.json(name)?;
@@ -152,7 +152,7 @@ impl Loaded {
             .names()
             .map_err(|error| wrong(path, error.to_string()))?;
         let reader = Reader { path, file, names };
-        if let Some(part) = reader.told(reader.file.portion())? {
+        if let Some(part) = reader.converted(reader.file.portion())? {
             return Err(reader.wrong(only_part(&part)));
         }
         for field in ["mass", "velocity"] {
@@ -181,13 +181,13 @@ impl Loaded {
         let damage = reader.field("damage", 1)?;
         let (temperature, missing) = temperatures(&reader, case.as_ref(), &body, &damage)?;
         let mut loaded = Self {
-            title: reader.told(reader.file.attribute("/whipple", "title"))?,
-            time: reader.told(reader.file.time())?,
+            title: reader.converted(reader.file.attribute("/whipple", "title"))?,
+            time: reader.converted(reader.file.time())?,
             options: case.ok().and_then(|case| case.fragments),
             missing,
             size: sizes.collect(),
             symmetry: reader.symmetry()?,
-            position: reader.told(reader.file.points(0..count))?,
+            position: reader.converted(reader.file.points(0..count))?,
             velocity: reader.field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
             plastic_strain: reader.field("plastic_strain", 1)?,
             dimension,
@@ -210,7 +210,7 @@ impl Loaded {
         }
     }
 
-    /// Which particles belong to fragments.
+    /// The particles that belong to fragments.
     pub fn included(&self, include: Include) -> Vec<bool> {
         self.damage
             .iter()
@@ -218,8 +218,8 @@ impl Loaded {
             .collect()
     }
 
-    /// The matter of it all.
-    pub fn matter<'a>(&'a self, included: &'a [bool]) -> Matter<'a> {
+    /// The particles as the search for fragments takes them.
+    pub fn particles<'a>(&'a self, included: &'a [bool]) -> Matter<'a> {
         Matter {
             owned: self.ids.len(),
             bodies: self.bodies.len(),
@@ -236,7 +236,7 @@ impl Loaded {
     }
 }
 
-/// Temperatures as the snapshot tells them, or as the case's materials do; else NaN, and why.
+/// Temperatures of the snapshot, or else from the case's materials; else NaN, and why.
 fn temperatures(
     reader: &Reader,
     case: Result<&Case, &String>,

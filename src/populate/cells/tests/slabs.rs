@@ -1,4 +1,4 @@
-//! Slabs and whole bodies, counted and told.
+//! Slabs and whole bodies, counted and tallied.
 
 use super::*;
 use crate;
@@ -19,21 +19,21 @@ fn slabs_hold_what_the_whole_holds_to_the_bit() {
 fn slabs_add_up(body: &Body) {
     let whole: Vec<Site> = populate::sites(body, 3, &[], None).collect();
     assert_eq!(whole.len() as u64, populate::count(body, 3, &[], None));
-    let mut parts: Vec<Site> = Vec::new();
+    let mut pieces: Vec<Site> = Vec::new();
     let faces = [f64::NEG_INFINITY, -14.0, -12.0, -4.0, 1.5, f64::INFINITY];
     for pair in faces.windows(2) {
         let (lower, upper) = (pair[0], pair[1]);
         let slab = Some(populate::Brick::slab(0, lower, upper));
-        let before = parts.len();
-        parts.extend(populate::sites(body, 3, &[], slab));
-        let count = (parts.len() - before) as u64;
+        let before = pieces.len();
+        pieces.extend(populate::sites(body, 3, &[], slab));
+        let count = (pieces.len() - before) as u64;
         assert_eq!(count, populate::count(body, 3, &[], slab));
     }
-    parts.sort_by_key(|site| site.index);
-    assert!(parts == whole);
+    pieces.sort_by_key(|site| site.index);
+    assert!(pieces == whole);
 }
 
-/// Whole tiles are told together: as many sites at the same coordinates as a walk finds, and the
+/// Whole tiles are counted together: as many sites at the same coordinates as a walk finds, and the
 /// same bounds.
 #[test]
 fn large_bodies_are_told_by_tiles() {
@@ -47,18 +47,18 @@ fn large_bodies_are_told_by_tiles() {
                 .flat_map(|block| cells.sites_of(block, &[]))
                 .map(|site| site.position[axis])
                 .collect();
-            let mut told = Vec::new();
+            let mut tallied = Vec::new();
             for part in 0..3 {
                 populate::tally(&body, 3, &[], axis, share(part), |x, n| {
-                    told.extend(std::iter::repeat_n(x, n as usize));
+                    tallied.extend(std::iter::repeat_n(x, n as usize));
                 });
             }
-            assert_eq!(told.len() as u64, cells.count(&[]));
+            assert_eq!(tallied.len() as u64, cells.count(&[]));
             walked.sort_by(f64::total_cmp);
-            told.sort_by(f64::total_cmp);
-            assert_eq!(told.len(), walked.len());
+            tallied.sort_by(f64::total_cmp);
+            assert_eq!(tallied.len(), walked.len());
             let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-12;
-            assert!(told.iter().zip(&walked).all(near));
+            assert!(tallied.iter().zip(&walked).all(near));
         }
     }
     let body = body(ball(12.0), LatticeKind::Glass, 1.0);

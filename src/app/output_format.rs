@@ -13,13 +13,13 @@ use model::readable::one_line;
 /// How a command tells its answer.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 #[group(skip)]
-pub struct Form {
+pub struct OutputFormat {
     /// Print one JSON document in place of text, with numbers in SI units
     #[arg(long)]
     json: bool,
 }
 
-impl Form {
+impl OutputFormat {
     /// Text is not printed from now on where a document is asked for.
     pub fn begin(self) {
         if self.json {
@@ -31,13 +31,13 @@ impl Form {
         }
     }
 
-    /// Whether a document is asked for.
+    /// `true` if a document is asked for.
     pub fn is_json(self) -> bool {
         self.json
     }
 
     /// Prints the document if it is asked for, with the files that have been written.
-    pub fn tell(self, document: impl FnOnce() -> Value) {
+    pub fn print(self, document: impl FnOnce() -> Value) {
         if !self.json {
             return;
         }
@@ -61,7 +61,7 @@ pub fn wrote(path: &Path, more: &str) {
     written.push(name);
 }
 
-/// Columns whose cells are words, whatever they look like.
+/// Columns whose cells are always words.
 const WORDS: [&str; 9] = [
     "body",
     "bodies",

@@ -6,9 +6,9 @@ use super::ellipsoid;
 use super::polygon::{Nearest, Polygon};
 use crate::{Cloud, Mesh, Vec3};
 
-/// What a solid is, before it is turned and moved. In two dimensions z does not count.
+/// A solid before it is turned and moved. In two dimensions z does not count.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Form {
+pub enum Primitive {
     /// Box of half edges (m); infinite along z in two dimensions.
     Box(Vec3),
     /// Ball or disc of a radius (m).
@@ -56,7 +56,7 @@ fn is_surface(edge: &[[f64; 2]; 2]) -> bool {
     edge[0][0] > 0.0 || edge[1][0] > 0.0
 }
 
-impl Form {
+impl Primitive {
     /// Distance (m) of a point from the surface, negative inside.
     #[must_use]
     pub fn distance(&self, p: &Vec3) -> f64 {
@@ -80,7 +80,7 @@ impl Form {
     }
 
     /// Tells the faces that a point inside lies less than `reach` (m) below.
-    pub fn faces(&self, p: &Vec3, reach: f64, tell: Faces) {
+    pub fn faces(&self, p: &Vec3, reach: f64, emit: Faces) {
         match self {
             Self::Box(half) => {
                 for a in 0..3 {
@@ -88,7 +88,7 @@ impl Form {
                     if depth < reach {
                         let mut normal = Vec3::zeros();
                         normal[a] = 1.0_f64.copysign(p[a]);
-                        tell(depth, normal);
+                        emit(depth, normal);
                     }
                 }
             }
@@ -96,16 +96,16 @@ impl Form {
                 let radius = libm::hypot(p.x, p.y);
                 profile.near_edges([radius, p.z], reach, is_surface, |near| {
                     let Nearest { distance, way } = near;
-                    tell(distance, around(p, radius, way));
+                    emit(distance, around(p, radius, way));
                 });
             }
             Self::Ogive { shank, .. } => {
                 let (lateral, way) = self.lateral(p);
                 if -lateral < reach {
-                    tell(-lateral, around(p, libm::hypot(p.x, p.y), way));
+                    emit(-lateral, around(p, libm::hypot(p.x, p.y), way));
                 }
                 if shank + p.z < reach {
-                    tell(shank + p.z, -Vec3::z());
+                    emit(shank + p.z, -Vec3::z());
                 }
             }
             Self::Prism { section, half } => {
@@ -114,22 +114,22 @@ impl Form {
                     reach,
                     |_| true,
                     |near| {
-                        tell(near.distance, Vec3::new(near.way[0], near.way[1], 0.0));
+                        emit(near.distance, Vec3::new(near.way[0], near.way[1], 0.0));
                     },
                 );
                 let depth = half - p.z.abs();
                 if depth < reach {
-                    tell(depth, Vec3::z() * 1.0_f64.copysign(p.z));
+                    emit(depth, Vec3::z() * 1.0_f64.copysign(p.z));
                 }
             }
             Self::Mesh(mesh) => {
                 let x = (*p).into();
-                mesh.faces(&x, reach, &mut |depth, normal| tell(depth, normal.into()));
+                mesh.faces(&x, reach, &mut |depth, normal| emit(depth, normal.into()));
             }
             Self::Ball(_) | Self::Ellipsoid(_) | Self::Torus { .. } | Self::Cloud(_) => {
                 let depth = -self.distance(p);
                 if depth < reach {
-                    tell(depth, self.outward(p));
+                    emit(depth, self.outward(p));
                 }
             }
         }

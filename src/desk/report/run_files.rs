@@ -1,4 +1,4 @@
-//! What is found in the folder of a run: its texts and tables, and what of them is missing or damaged.
+//! The folder of a run: its texts and tables, and which of them are missing or damaged.
 
 use std::cmp::Reverse;
 use std::path::Path;
@@ -9,23 +9,23 @@ use serde_json::{Map, Value};
 use files::output::{OutputError, RunFolder, Sheet, Status, read_regular, read_small};
 use model::readable::{Readable, short};
 
-/// A run as its folder tells it. What cannot be read is a sentence that says so.
+/// The folder of a run. An unreadable text is a sentence that says so.
 #[derive(Debug)]
 pub struct Run {
-    /// What the folder is called.
+    /// The name of the folder.
     pub name: String,
     /// The folder.
     pub folder: RunFolder,
     /// The resolved input.
     pub case: Result<toml::Table, String>,
-    /// Where the run stands.
+    /// The status of the run.
     pub status: Result<Status, String>,
     /// The figures of the whole run.
     pub summary: Result<Map<String, Value>, String>,
 }
 
 impl Run {
-    /// Reads the texts of a run, whose folder goes by its whole path; tables are read as they are asked for.
+    /// Reads the texts of a run, whose folder goes by its whole path; tables are read on demand.
     pub fn read(folder: &RunFolder) -> Self {
         Self {
             name: file_name(folder.path()),
@@ -46,8 +46,8 @@ impl Run {
     pub fn figure(&self, key: &str) -> Option<&Value> {
         let mut parts = key.split('.');
         let first = self.summary.as_ref().ok()?.get(parts.next()?)?;
-        let found = parts.try_fold(first, |value, part| value.get(part))?;
-        (!found.is_null()).then_some(found)
+        let value = parts.try_fold(first, |value, part| value.get(part))?;
+        (!value.is_null()).then_some(value)
     }
 
     /// The same of a number.
@@ -66,19 +66,19 @@ impl Run {
         all.filter_map(toml::Value::as_table).collect()
     }
 
-    /// What went wrong, without the way to the folder, which is another on each machine.
+    /// An error without the path of the folder, which differs between machines.
     pub fn without_path(&self, error: &impl ToString) -> String {
         without_paths(&[self], error)
     }
 
-    /// How many images of the model stand behind planes of symmetry, itself included.
+    /// The number of images of the model behind planes of symmetry, itself included.
     pub fn copies(&self) -> f64 {
         let planes = self.entries("symmetry").len().min(3);
         f64::from(1_u32 << planes)
     }
 }
 
-/// What went wrong with any of some runs, without the ways to their folders.
+/// An error of some runs without the paths of their folders.
 pub fn without_paths(runs: &[&Run], error: &impl ToString) -> String {
     let way = |run: &&Run| run.folder.path().display().to_string();
     let mut ways: Vec<String> = runs.iter().map(way).collect();
@@ -122,7 +122,7 @@ fn file_name(path: &Path) -> String {
         .into_owned()
 }
 
-/// What is said of a file that is not there, without the way to it, which is another on each machine.
+/// The message for a file that is not there, without its path, which differs between machines.
 fn lacks(path: &Path, error: &OutputError) -> String {
     let name = file_name(path);
     if !path.exists() {
@@ -169,8 +169,8 @@ impl Rows {
 
     /// The place of a column.
     pub fn column(&self, name: &str) -> Result<usize, String> {
-        let found = self.sheet.names.iter().position(|own| own == name);
-        found.ok_or_else(|| format!("{} has no column {name}", self.file))
+        let column = self.sheet.names.iter().position(|own| own == name);
+        column.ok_or_else(|| format!("{} has no column {name}", self.file))
     }
 
     /// A cell.
@@ -183,22 +183,22 @@ impl Rows {
         self.text(row, column).parse().unwrap_or(f64::NAN)
     }
 
-    /// A cell with its unit, for people; `–` if it is no number, or there is no such column.
-    pub fn shown(&self, row: usize, name: &str) -> String {
+    /// A cell with its unit, for people; `–` if it is NaN, or if there is no such column.
+    pub fn cell(&self, row: usize, name: &str) -> String {
         let Ok(column) = self.column(name) else {
             return "–".to_owned();
         };
-        told(self.number(row, column), self.unit(column))
+        with_unit(self.number(row, column), self.unit(column))
     }
 
     /// A vector with its unit, for people, from the columns of its components.
-    pub fn shown_vector(&self, row: usize, stem: &str) -> String {
-        let places = ["x", "y", "z"].map(|axis| self.column(&format!("{stem}_{axis}")));
-        let [Ok(x), Ok(y), Ok(z)] = places else {
+    pub fn vector(&self, row: usize, stem: &str) -> String {
+        let columns = ["x", "y", "z"].map(|axis| self.column(&format!("{stem}_{axis}")));
+        let [Ok(x), Ok(y), Ok(z)] = columns else {
             return "–".to_owned();
         };
         let components = [x, y, z].map(|column| self.number(row, column));
-        told_vector(&components, self.unit(x))
+        vector_with_unit(&components, self.unit(x))
     }
 
     /// SI unit of a column; empty for none.
@@ -219,7 +219,7 @@ impl Rows {
 }
 
 /// A number with its unit, for people; `–` if it is none.
-pub fn told(value: f64, unit: &str) -> String {
+pub fn with_unit(value: f64, unit: &str) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
@@ -228,7 +228,7 @@ pub fn told(value: f64, unit: &str) -> String {
 }
 
 /// The same of a vector, with one unit.
-pub fn told_vector(components: &[f64], unit: &str) -> String {
+pub fn vector_with_unit(components: &[f64], unit: &str) -> String {
     let largest = components
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -313,18 +313,18 @@ mod tests {
 
     #[test]
     fn what_cannot_be_read_is_told_without_its_path() {
-        let place = tempfile::tempdir().unwrap();
-        std::fs::create_dir(place.path().join("bodies.csv")).unwrap();
-        std::fs::write(place.path().join("status.json"), "{}").unwrap();
-        let run = Run::read(&RunFolder::at(place.path()));
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::create_dir(dir.path().join("bodies.csv")).unwrap();
+        std::fs::write(dir.path().join("status.json"), "{}").unwrap();
+        let run = Run::read(&RunFolder::at(dir.path()));
         let of_rows = Rows::read(&run.folder.bodies()).unwrap_err();
         let of_status = run.status.unwrap_err();
-        let way = place.path().display().to_string();
-        for (text, told) in [
+        let way = dir.path().display().to_string();
+        for (text, start) in [
             (of_rows, "bodies.csv cannot be read: "),
             (of_status, "status.json is damaged: "),
         ] {
-            assert!(text.starts_with(told) && !text.contains(&way), "{text}");
+            assert!(text.starts_with(start) && !text.contains(&way), "{text}");
         }
     }
 }

@@ -1,25 +1,25 @@
-//! What of a picture is not as in the one before.
+//! The rectangle of a picture that differs from the one before.
 
 /// A rectangle of the pixels of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part {
+pub struct Patch {
     pub left: usize,
     pub top: usize,
     pub width: usize,
     pub height: usize,
 }
 
-impl Part {
+impl Patch {
     /// The least that holds all pixels that differ in two pictures of a width, row by row; one pixel
     /// if none does, since a picture like the one before has its time.
     pub fn changed<P: PartialEq>(before: &[P], now: &[P], width: usize) -> Self {
         let differs = |k: &usize| now[*k] != before[*k];
-        let places = || (0..now.len()).filter(differs);
+        let indices = || (0..now.len()).filter(differs);
         let (first, last) = (
-            places().next().unwrap_or(0),
-            places().next_back().unwrap_or(0),
+            indices().next().unwrap_or(0),
+            indices().next_back().unwrap_or(0),
         );
-        let (left, right) = places().fold((width, 0), |(left, right), k| {
+        let (left, right) = indices().fold((width, 0), |(left, right), k| {
             (left.min(k % width), right.max(k % width))
         });
         let left = left.min(right);
@@ -33,7 +33,7 @@ impl Part {
     }
 
     /// The numbers of its pixels in a picture of a width, row by row.
-    pub fn places(self, width: usize) -> impl Iterator<Item = usize> {
+    pub fn indices(self, width: usize) -> impl Iterator<Item = usize> {
         let row = move |row: usize| {
             let first = row * width + self.left;
             first..first + self.width
