@@ -203,7 +203,7 @@ impl Loaded {
         let case = input::parse(&path.display().to_string(), &text, set)?;
         let read_error = |error: ReadError| wrong(error.to_string());
         let file = SnapshotFile::open(path).map_err(read_error)?;
-        if let Some(part) = file.part().map_err(read_error)? {
+        if let Some(part) = file.portion().map_err(read_error)? {
             return Err(wrong(only_part(&part)));
         }
         let names = file.names().map_err(read_error)?;

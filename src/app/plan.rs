@@ -221,7 +221,7 @@ fn print_ranks(
     say(&words::sharing(sharing));
     say("");
     say(&table::head());
-    let alone = layout_of(source, (1, Some(1)), 1)?.loads[0];
+    let alone = layout_of(source, 1, Some(1), 1)?.loads[0];
     let mut all = Vec::new();
     for ranks in args.ladder(source.particles.positions.len()) {
         let own = layout_of(source, ranks, None, sharing.ranks_per_node)?;

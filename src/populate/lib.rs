@@ -32,9 +32,9 @@ use row::cuts;
 #[cfg(test)]
 mod tests;
 
-/// The number of visited rows and blocks of a thread, for tests of what may not grow.
-#[cfg(test)]
-pub(crate) mod visits {
+/// Rows and blocks of lattices that a thread has visited, in builds with debug assertions: for tests of what may not grow.
+#[cfg(debug_assertions)]
+pub mod visits {
     use std::cell::Cell;
 
     thread_local! {

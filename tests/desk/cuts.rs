@@ -134,7 +134,7 @@ fn caption(snapshot: &Path, request: &Request) -> String {
     };
     Pictures::new(&[source], request)
         .unwrap()
-        .place()
+        .caption()
         .to_owned()
 }
 

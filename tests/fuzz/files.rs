@@ -447,7 +447,7 @@ struct FragmentsCli {
 fn tell_fragments(path: &Path) -> Result<String, String> {
     let words = ["fragments", path.to_str().unwrap()];
     let cli = FragmentsCli::try_parse_from(words).map_err(|e| e.to_string())?;
-    let told = fragments::tell(&cli.args);
+    let told = fragments::evaluate(&cli.args);
     told.map_err(|e| e.to_string()).map(|_| "told".to_owned())
 }
 

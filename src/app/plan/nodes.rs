@@ -49,13 +49,13 @@ fn compare(args: &PlanArgs, source: &Source, machine: &Machine) -> Result<Vec<Ro
     say("");
     let head = "nodes x ranks x threads";
     say(&format!("{head:>WIDTH$}{}", table::head()));
-    let alone = layout_of(source, (1, Some(1)), 1)?.loads[0];
+    let alone = layout_of(source, 1, Some(1), 1)?.loads[0];
     let mut all = Vec::new();
     for nodes in args.nodes.iter().map(|&nodes| nodes as usize) {
         let mut rows = Vec::new();
         for sharing in sharings(args, machine, nodes, source.particles.positions.len())? {
             let ranks = nodes * sharing.ranks_per_node;
-            let layout = layout_of(source, (ranks, None), sharing.ranks_per_node)?;
+            let layout = layout_of(source, ranks, None, sharing.ranks_per_node)?;
             rows.push(row_of(source, machine, &layout, sharing, &alone));
         }
         let fastest = fastest(&rows, machine).copied();

@@ -103,7 +103,7 @@ fn of_snapshot(path: &Path, set: &[String]) -> Result<Source, String> {
     let text = Content::open(path).and_then(|file| file.text("/whipple/input"));
     let case = saved_case(path, &text.map_err(|error| with_prefix(&error))?, set)?;
     let file = SnapshotFile::open(path).map_err(|error| with_prefix(&error))?;
-    if let Some(part) = file.part().map_err(|error| with_prefix(&error))? {
+    if let Some(part) = file.portion().map_err(|error| with_prefix(&error))? {
         return Err(wrong(path, &only_part(&part)));
     }
     let names = file.names().map_err(|error| with_prefix(&error))?;

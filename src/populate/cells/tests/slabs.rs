@@ -1,7 +1,6 @@
 //! Slabs and whole bodies, counted and tallied.
 
 use super::*;
-use crate;
 
 #[test]
 fn slabs_hold_what_the_whole_holds_to_the_bit() {
@@ -17,17 +16,17 @@ fn slabs_hold_what_the_whole_holds_to_the_bit() {
 }
 
 fn slabs_add_up(body: &Body) {
-    let whole: Vec<Site> = populate::sites(body, 3, &[], None).collect();
-    assert_eq!(whole.len() as u64, populate::count(body, 3, &[], None));
+    let whole: Vec<Site> = crate::sites(body, 3, &[], None).collect();
+    assert_eq!(whole.len() as u64, crate::count(body, 3, &[], None));
     let mut pieces: Vec<Site> = Vec::new();
     let faces = [f64::NEG_INFINITY, -14.0, -12.0, -4.0, 1.5, f64::INFINITY];
     for pair in faces.windows(2) {
         let (lower, upper) = (pair[0], pair[1]);
-        let slab = Some(populate::Brick::slab(0, lower, upper));
+        let slab = Some(crate::Brick::slab(0, lower, upper));
         let before = pieces.len();
-        pieces.extend(populate::sites(body, 3, &[], slab));
+        pieces.extend(crate::sites(body, 3, &[], slab));
         let count = (pieces.len() - before) as u64;
-        assert_eq!(count, populate::count(body, 3, &[], slab));
+        assert_eq!(count, crate::count(body, 3, &[], slab));
     }
     pieces.sort_by_key(|site| site.index);
     assert!(pieces == whole);
@@ -37,7 +36,7 @@ fn slabs_add_up(body: &Body) {
 /// same bounds.
 #[test]
 fn large_bodies_are_told_by_tiles() {
-    let share = |part| populate::Share { part, parts: 3 };
+    let share = |part| crate::Share { part, parts: 3 };
     for kind in [LatticeKind::Glass, LatticeKind::FaceCentred] {
         let body = body(ball(40.0), kind, 1.0);
         let cells = Cells::of(&body, 3, &[]).unwrap();
@@ -49,7 +48,7 @@ fn large_bodies_are_told_by_tiles() {
                 .collect();
             let mut tallied = Vec::new();
             for part in 0..3 {
-                populate::tally(&body, 3, &[], axis, share(part), |x, n| {
+                crate::tally(&body, 3, &[], axis, share(part), |x, n| {
                     tallied.extend(std::iter::repeat_n(x, n as usize));
                 });
             }
@@ -62,19 +61,19 @@ fn large_bodies_are_told_by_tiles() {
         }
     }
     let body = body(ball(12.0), LatticeKind::Glass, 1.0);
-    let (lower, upper) = populate::bounds(&body, 3).unwrap();
+    let (lower, upper) = crate::bounds(&body, 3).unwrap();
     let centre = [0.3, -0.2, 0.1];
     for a in 0..3 {
         assert!((lower[a] - centre[a] + 11.5).abs() < 0.1, "{lower:?}");
         assert!((upper[a] - centre[a] - 11.5).abs() < 0.1, "{upper:?}");
     }
-    let visits = populate::visits::of(|| {
+    let visits = crate::visits::of(|| {
         let edges = Shape::Box {
             lower: Vec3::zeros(),
             upper: Vec3::repeat(400.0),
         };
         let body = self::body(edges, LatticeKind::Glass, 1.0);
-        let (lower, upper) = populate::bounds(&body, 3).unwrap();
+        let (lower, upper) = crate::bounds(&body, 3).unwrap();
         for a in 0..3 {
             assert!((lower[a] - 0.5).abs() < 1e-8 && (upper[a] - 399.5).abs() < 1e-8);
         }
