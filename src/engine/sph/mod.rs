@@ -6,7 +6,9 @@
 //! outside the support adds an exact zero.
 
 pub mod corrected;
+mod force_sweep;
 mod formulation;
+mod from_mirrors;
 pub mod gradient;
 pub mod hourglass;
 pub mod linear_fit;
@@ -17,14 +19,16 @@ pub mod neighbourhood;
 pub mod normalised;
 mod phase;
 pub mod principal;
+mod pull_sweep;
 mod recording;
-mod records;
 mod rest;
+mod scale;
 mod signal;
 mod smoothing;
 mod step;
 pub mod stress_points;
 mod sums;
+mod term_records;
 pub mod terms;
 mod virial;
 

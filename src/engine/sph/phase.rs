@@ -11,14 +11,14 @@ use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::step::{Side, Step};
 use super::sums::Sums;
-use super::terms;
+use super::term_records;
+use particles::MirrorForce;
 use crate::domain::Shown;
 use crate::loads::Loads;
 use model::{Case, SphForm};
-use numerics::kernel::Kernel;
-use particles::MirrorForce;
-use particles::ParticleStore;
 use particles::neighbours::Lists;
+use numerics::kernel::Kernel;
+use particles::ParticleStore;
 
 /// The SPH sums of a case, with what they keep from step to step.
 pub struct Sph {
@@ -96,11 +96,11 @@ impl Sph {
     pub fn bytes_of_records(case: &Case) -> usize {
         // Beyond the records of stress, which all forms have.
         let corrected = match case.sph.form {
-            SphForm::Normalised => size_of::<NormalisedRecord>(),
+            SphForm::Normalised => size_of::<NormalisedRecord>() - size_of::<StressRecord>(),
             SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
-        terms::bytes_of_records(&case.sph) + corrected
+        term_records::bytes_of_records(&case.sph) + corrected
     }
 
     /// Memory for so many images that is free until [`Self::rates`].

@@ -1,18 +1,19 @@
-//! What the formulations share: the pair scale, records of stress, and what they are given.
+//! What the formulations share: records of stress, and what they are given.
 
 use rayon::prelude::*;
 
+use super::from_mirrors::FromMirrors;
 use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
 use super::rest::Resting;
+use super::scale::Scale;
 use super::step::Side;
-use super::terms::Terms;
+use super::term_records::Terms;
 use material::{Material, NEGLIGIBLE};
 use model::{Case, SmoothingLength};
-use numerics::kernel::{ConstantScale, Kernel, MeanScale};
-use numerics::lanes::LANES;
-use particles::MirrorForce;
 use particles::neighbours::Lists;
+use numerics::kernel::Kernel;
+use numerics::lanes::LANES;
 use particles::{GRAIN, Scatter, resize};
 
 /// What a formulation finds beside particles and lists, kept from step to step.
@@ -34,43 +35,6 @@ pub(super) struct Sums {
     pub uncorrected: i64,
 }
 
-/// What the images behind symmetry planes exert on the particles of a chunk.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FromMirrors {
-    /// The images among the neighbours of one cluster.
-    pub(super) indices: Vec<u32>,
-    /// What they do to single particles.
-    pub(super) forces: Vec<MirrorForce>,
-}
-
-impl FromMirrors {
-    fn memory(&self) -> usize {
-        4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
-    }
-}
-
-/// The pair scale of a case, chosen once.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Scale {
-    Constant(ConstantScale),
-    One(MeanScale<1>),
-    Two(MeanScale<2>),
-    Three(MeanScale<3>),
-}
-
-/// Calls `$work` with the scale of a case as a concrete type.
-macro_rules! with_scale {
-    ($scale:expr, $name:ident => $work:expr) => {
-        match $scale {
-            $crate::sph::sums::Scale::Constant($name) => $work,
-            $crate::sph::sums::Scale::One($name) => $work,
-            $crate::sph::sums::Scale::Two($name) => $work,
-            $crate::sph::sums::Scale::Three($name) => $work,
-        }
-    };
-}
-pub(super) use with_scale;
-
 impl Sums {
     pub fn new(case: &Case, kernel: &Kernel) -> Self {
         let h = case.bodies.first().map_or(1.0, |b| b.smoothing_length);
@@ -79,12 +43,7 @@ impl Sums {
             .iter()
             .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes.is_none());
         let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
-        let scale = match case.dimension {
-            _ if constant => Scale::Constant(ConstantScale::new(kernel, h)),
-            1 => Scale::One(MeanScale::new(kernel)),
-            2 => Scale::Two(MeanScale::new(kernel)),
-            _ => Scale::Three(MeanScale::new(kernel)),
-        };
+        let scale = Scale::new(kernel, constant.then_some(h));
         Self {
             dimension: case.dimension,
             scale,

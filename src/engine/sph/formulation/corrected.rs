@@ -6,7 +6,16 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
+use particles::Mirrors;
 use crate::domain::Shown;
+use material::{FAILED, NEGLIGIBLE, PointBatch};
+use model::Case;
+use particles::neighbours::{Among, Cluster, Lists};
+use numerics::dispatch::Vectorised;
+use numerics::kernel::PairScale;
+use numerics::lane_matrix::{full, load_all, read_all, store_all};
+use numerics::lanes::{F64x8, LANES, Lanes};
+use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
 use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
@@ -14,14 +23,6 @@ use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::sums::{Sums, scratch_of, show_images};
-use material::{FAILED, NEGLIGIBLE, PointBatch};
-use model::Case;
-use numerics::dispatch::Vectorised;
-use numerics::kernel::PairScale;
-use numerics::lane_matrix::{full, load_all, read_all, store_all};
-use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::neighbours::{Among, Cluster, Lists};
-use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
 
 /// The corrected formulation.
 #[derive(Debug, Default)]
@@ -107,12 +108,11 @@ impl Formulation for Corrected {
                     None => unsafe { records.read(places[base] as usize) },
                     Some(k) => heard[k],
                 };
-                shown.reflected(code)
+                reflected(&shown, code)
             },
         );
         sums.terms.show(particles, lists, side);
-        let set = sums.terms.set();
-        accelerate(sums, (set, &self.records, &[]), particles, lists, side);
+        accelerate(sums, &self.records, particles, lists, side);
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {
@@ -207,6 +207,15 @@ impl Gradient for CorrectedGradients<'_> {
             *self.records.slot(place) =
                 CorrectedRecord::new(&[0.0; 9], &[0.0; 3], self.hourglass, state);
         }
+    }
+}
+
+/// What the image `code` of a particle shows that shows this.
+fn reflected(record: &CorrectedRecord, code: u8) -> CorrectedRecord {
+    CorrectedRecord {
+        stress: Mirrors::reflect_tensor(&record.stress, code),
+        hourglass: Mirrors::reflect_vector(&record.hourglass, code),
+        ..*record
     }
 }
 

@@ -1,0 +1,208 @@
+//! The second sweep over the clusters of a task.
+
+use super::corrected::CorrectedRecord;
+use super::from_mirrors::FromMirrors;
+use super::momentum::{Forces, Momentum, PairStress, StressRecord, Viscosity};
+use super::neighbourhood::Sources;
+use super::normalised::{NormalisedRecord, stress_power};
+use super::scale::{Scale, with_scale};
+use super::step::Side;
+use super::terms::{PairTerms, with_terms};
+use particles::MirrorForce;
+use particles::neighbours::{Chunk, Cluster};
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::kernel::PairScale;
+use numerics::lanes::{F64x8, Lanes};
+use particles::{Image, Scatter};
+
+/// What the second sweep reads and writes.
+pub(super) struct ForceSweep<'a, R> {
+    pub motion: Sources<'a, Scale>,
+    pub images: &'a [Image],
+    /// Odd of those behind symmetry planes.
+    pub mirrored: &'a [u8],
+    /// What all particles and images show.
+    pub stresses: &'a [R],
+    pub viscosity: Viscosity,
+    pub terms: PairTerms<'a>,
+    /// Which clusters are swept.
+    pub side: Side,
+    pub target: ForceTarget<'a>,
+}
+
+/// Records that the second sweep is compiled for.
+pub(super) trait Swept: PairStress {
+    /// Sweeps the clusters of a task.
+    fn sweep(all: &ForceSweep<Self>, chunk: &Chunk, from_mirrors: &mut FromMirrors);
+}
+
+/// All of it is compiled here, whoever calls it.
+macro_rules! swept {
+    ($($record:ty),+) => {
+        $(
+            impl Swept for $record {
+                fn sweep(all: &ForceSweep<Self>, chunk: &Chunk, from_mirrors: &mut FromMirrors) {
+                    with_scale!(all.motion.scale, scale => with_terms!(all.terms.set, TERMS => {
+                        instructions().run(MomentumChunk::<_, Self, TERMS> {
+                            all,
+                            motion: all.motion.with(scale),
+                            chunk,
+                            from_mirrors,
+                        });
+                    }));
+                }
+            }
+        )+
+    };
+}
+swept!(StressRecord, CorrectedRecord, NormalisedRecord);
+
+/// Where the second sweep writes.
+pub(super) struct ForceTarget<'a> {
+    pub mass: &'a [f64],
+    pub acceleration: Scatter<'a, [f64; 3]>,
+    pub power: Scatter<'a, f64>,
+    pub approach: Scatter<'a, f64>,
+    pub correction: Option<Scatter<'a, [f64; 3]>>,
+    pub stress_power: StressPower<'a>,
+}
+
+impl ForceTarget<'_> {
+    #[inline(always)]
+    fn store<R: PairStress, const TERMS: bool>(
+        &self,
+        images: &[Image],
+        cluster: &Cluster,
+        forces: &Forces,
+    ) {
+        for k in 0..cluster.lanes {
+            let i = images[cluster.receivers[k] as usize].base();
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
+                *self.power.slot(i) = forces.power.0[k];
+                *self.approach.slot(i) = forces.approach.0[k];
+                if R::CORRECTED {
+                    *self.power.slot(i) += self.stress_power.of(i);
+                }
+                if TERMS && let Some(correction) = &self.correction {
+                    *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
+                }
+            }
+        }
+    }
+}
+
+/// What the power follows from that stresses put into heat: fields of all particles.
+pub(super) struct StressPower<'a> {
+    pub pressure: &'a [f64],
+    pub deviatoric_stress: &'a [[f64; 6]],
+    pub velocity_gradient: &'a [[f64; 9]],
+    pub predicted_density: &'a [f64],
+}
+
+impl StressPower<'_> {
+    /// Of owned particle `i` (W/kg).
+    #[inline(always)]
+    fn of(&self, i: usize) -> f64 {
+        stress_power(
+            self.pressure[i],
+            &self.deviatoric_stress[i],
+            &self.velocity_gradient[i],
+            self.predicted_density[i],
+        )
+    }
+}
+
+/// The second sweep over one task's clusters.
+struct MomentumChunk<'a, S, R, const TERMS: bool> {
+    all: &'a ForceSweep<'a, R>,
+    motion: Sources<'a, S>,
+    chunk: &'a Chunk,
+    from_mirrors: &'a mut FromMirrors,
+}
+
+impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChunk<'_, S, R, TERMS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let ForceSweep {
+            images,
+            mirrored,
+            stresses,
+            viscosity,
+            terms,
+            side,
+            target,
+            ..
+        } = self.all;
+        let FromMirrors {
+            indices,
+            forces: from_mirrors,
+        } = self.from_mirrors;
+        let chunk = self.chunk.iter();
+        for (cluster, neighbours, among) in chunk.filter(|(_, _, among)| side.takes(among.halo)) {
+            let free = |&j: &u32| stresses[j as usize].is_free();
+            if among.resting || !among.moving && neighbours.iter().all(free) {
+                target.store::<R, TERMS>(images, cluster, &Forces::NONE);
+                continue;
+            }
+            // With all neighbours, and where there are images with these alone: in a loop, so that the sum is
+            // compiled once.
+            for alone in [false, true] {
+                let neighbours = if alone {
+                    let is_image = |&j: &u32| mirrored[j as usize] & 1 == 1;
+                    indices.clear();
+                    indices.extend(neighbours.iter().copied().filter(is_image));
+                    &*indices
+                } else {
+                    neighbours
+                };
+                let around = self.motion.around(cluster.receivers, neighbours);
+                let sums = Momentum::<S, R, TERMS> {
+                    around,
+                    stresses,
+                    viscosity: *viscosity,
+                    terms: *terms,
+                };
+                let forces = sums.run::<V>();
+                if alone {
+                    let couple = R::couple::<V, S>(&around, stresses);
+                    push_forces(
+                        from_mirrors,
+                        images,
+                        target.mass,
+                        cluster,
+                        (&forces, &couple),
+                    );
+                } else {
+                    target.store::<R, TERMS>(images, cluster, &forces);
+                }
+                if !among.mirrors {
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// Keeps what images do to the receivers of a cluster: forces and torques.
+#[inline(always)]
+fn push_forces(
+    from_mirrors: &mut Vec<MirrorForce>,
+    images: &[Image],
+    mass: &[f64],
+    cluster: &Cluster,
+    (forces, couple): (&Forces, &[F64x8; 3]),
+) {
+    for k in 0..cluster.lanes {
+        let i = images[cluster.receivers[k] as usize].base();
+        let force = |a: usize| mass[i] * forces.acceleration[a].0[k];
+        from_mirrors.push(MirrorForce {
+            particle: i,
+            force: [force(0), force(1), force(2)],
+            couple: [couple[0].0[k], couple[1].0[k], couple[2].0[k]],
+        });
+    }
+}
