@@ -184,7 +184,7 @@ impl World {
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: numerics::dispatch::Instructions| {
-                set.run(Momentum::<S, StressRecord, NORMALISED> {
+                set.run(Momentum::<S, NormalisedRecord, false> {
                     around: Sources {
                         records: &self.found.motion,
                         lengths: self.found.sequence.smoothing_lengths(),

@@ -8,11 +8,11 @@ use super::normalised::{NormalisedRecord, stress_power};
 use super::scale::{Scale, with_scale};
 use super::step::Side;
 use super::terms::{PairTerms, with_terms};
-use particles::MirrorForce;
-use particles::neighbours::{Chunk, Cluster};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, Lanes};
+use particles::MirrorForce;
+use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
 /// What the second sweep reads and writes.

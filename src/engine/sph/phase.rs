@@ -12,13 +12,13 @@ use super::smoothing::Smoothing;
 use super::step::{Side, Step};
 use super::sums::Sums;
 use super::term_records;
-use particles::MirrorForce;
 use crate::domain::Shown;
 use crate::loads::Loads;
 use model::{Case, SphForm};
-use particles::neighbours::Lists;
 use numerics::kernel::Kernel;
+use particles::MirrorForce;
 use particles::ParticleStore;
+use particles::neighbours::Lists;
 
 /// The SPH sums of a case, with what they keep from step to step.
 pub struct Sph {

@@ -5,11 +5,11 @@ use super::neighbourhood::Sources;
 use super::scale::{Scale, with_scale};
 use super::step::Side;
 use super::stress_points::{Pull, Pulled, StressPointRecord};
-use particles::MirrorForce;
-use particles::neighbours::{Chunk, Cluster};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::Lanes;
+use particles::MirrorForce;
+use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
 /// What the second sweep reads and writes.

@@ -11,9 +11,9 @@ use super::step::Side;
 use super::term_records::Terms;
 use material::{Material, NEGLIGIBLE};
 use model::{Case, SmoothingLength};
-use particles::neighbours::Lists;
 use numerics::kernel::Kernel;
 use numerics::lanes::LANES;
+use particles::neighbours::Lists;
 use particles::{GRAIN, Scatter, resize};
 
 /// What a formulation finds beside particles and lists, kept from step to step.

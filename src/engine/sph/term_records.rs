@@ -6,11 +6,11 @@ use super::step::Side;
 use super::terms::artificial_stress::repulsion;
 use super::terms::balsara::limiter;
 use super::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, TermRecord, XSPH};
-use particles::Mirrors;
 use crate::loads::Loads;
 use model::{Case, SphOptions};
-use particles::neighbours::Lists;
 use numerics::kernel::Kernel;
+use particles::Mirrors;
+use particles::neighbours::Lists;
 use particles::{GRAIN, Image, ParticleStore, resize};
 
 /// The pair terms of a case, and what particles and images show for them.

@@ -6,16 +6,7 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use particles::Mirrors;
 use crate::domain::Shown;
-use material::{FAILED, NEGLIGIBLE, PointBatch};
-use model::Case;
-use particles::neighbours::{Among, Cluster, Lists};
-use numerics::dispatch::Vectorised;
-use numerics::kernel::PairScale;
-use numerics::lane_matrix::{full, load_all, read_all, store_all};
-use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
 use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
@@ -23,6 +14,15 @@ use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::sums::{Sums, scratch_of, show_images};
+use material::{FAILED, NEGLIGIBLE, PointBatch};
+use model::Case;
+use numerics::dispatch::Vectorised;
+use numerics::kernel::PairScale;
+use numerics::lane_matrix::{full, load_all, read_all, store_all};
+use numerics::lanes::{F64x8, LANES, Lanes};
+use particles::Mirrors;
+use particles::neighbours::{Among, Cluster, Lists};
+use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
 
 /// The corrected formulation.
 #[derive(Debug, Default)]

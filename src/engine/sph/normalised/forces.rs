@@ -1,9 +1,9 @@
 //! The second sweep: what particles show of their stress, and its forces.
 
-use numerics::kernel::PairScale;
-use numerics::lanes::{LANES, Lanes};
 use crate::sph::momentum::{Forces, Momentum, OwnStress, PairStress, sum};
 use crate::sph::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
+use numerics::kernel::PairScale;
+use numerics::lanes::{LANES, Lanes};
 
 /// What a particle shows to its neighbours of its stress and its correction.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]

@@ -2,9 +2,9 @@
 //! other, the nearer the more.
 
 use super::TermRecord;
-use numerics::lanes::{LANES, Lanes};
 use crate::sph::neighbourhood::gather_all;
 use crate::sph::principal::tensile_part;
+use numerics::lanes::{LANES, Lanes};
 
 /// Artificial stress over density squared (Pa m⁶/kg²), `R = −ε Σ_a ⟨σ_a⟩₊ n_a ⊗ n_a/ρ²` over the
 /// principal stresses `σ_a` and directions `n_a` (Gray, Monaghan & Swift 2001): a pressure along

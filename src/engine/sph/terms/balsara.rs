@@ -1,8 +1,8 @@
 //! The switch of Balsara (1995), which takes artificial viscosity out of shear.
 
 use super::TermRecord;
-use numerics::lanes::{LANES, Lanes};
 use crate::sph::neighbourhood::gather;
+use numerics::lanes::{LANES, Lanes};
 
 /// The Balsara switch `|∇·v|/(|∇·v| + |∇×v| + 10⁻⁴ c/h)` (Balsara 1995): one in compression, zero
 /// in shear. From the velocity gradient (1/s, row-major), sound speed (m/s) and smoothing length

@@ -1,8 +1,8 @@
 //! Artificial conduction between approaching particles (Noh 1987; Monaghan 1997).
 
 use super::TermRecord;
-use numerics::lanes::{LANES, Lanes};
 use crate::sph::neighbourhood::gather;
+use numerics::lanes::{LANES, Lanes};
 
 /// The part of eight receivers.
 pub(super) struct Lane<V> {

@@ -17,7 +17,9 @@ use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{AngularVelocityParams, BodyParams, ShapeParams};
 use crate::input::source::Diagnostic;
 use material::{Eos, Failure, Linear, LinearForm, Material, Strength};
-use model::{Body, Primitive, Lattice, LatticeKind, Motion, Profile, Shape, Solid, SymmetryPlane, Vec3};
+use model::{
+    Body, Lattice, LatticeKind, Motion, Primitive, Profile, Shape, Solid, SymmetryPlane, Vec3,
+};
 use populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.

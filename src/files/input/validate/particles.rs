@@ -18,7 +18,7 @@ use crate::input::source::Diagnostic;
 use asked::{columns, parts};
 use material::Material;
 use model::{
-    Cloud, Primitive, Initial, Placement, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
+    Cloud, Initial, Placement, Primitive, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
 };
 
 /// What a body is made with.

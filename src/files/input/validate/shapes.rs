@@ -9,7 +9,7 @@ use crate::input::schema::{
     AxisParams, BoxParams, CylinderParams, Point, ShapeParams, SphereParams,
 };
 use crate::input::source::Diagnostic;
-use model::{Axis, Primitive, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use model::{Axis, Placement, Polygon, Primitive, Shape, Solid, Vec3, rotation};
 
 /// What the shape of one body is read with.
 pub struct Shapes<'a> {

@@ -10,7 +10,7 @@ use crate::input::schema::{
 };
 use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
-use model::{Primitive, Placement, Polygon, Shape, Solid, Vec3, rotation};
+use model::{Placement, Polygon, Primitive, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
@@ -29,7 +29,10 @@ impl Shapes<'_> {
             semi.z = f64::INFINITY;
         }
         let place = Placement::at(centre);
-        Ok(Shape::Solid(Solid::Primitive(Primitive::Ellipsoid(semi), place)))
+        Ok(Shape::Solid(Solid::Primitive(
+            Primitive::Ellipsoid(semi),
+            place,
+        )))
     }
 
     pub(super) fn cone(&self, table: &Spanned<ConeParams>) -> Result<Shape, Diagnostic> {

@@ -1,6 +1,6 @@
 //! What is measured of a body because of its shape: plates, bars and targets.
 
-use model::{Bar, Case, Primitive, Include, MeasureKind, Slab, Solid, Vec3};
+use model::{Bar, Case, Include, MeasureKind, Primitive, Slab, Solid, Vec3};
 
 /// A plate is at most this part as thick as it is wide.
 const THIN: f64 = 1.0 / 3.0;
@@ -34,9 +34,10 @@ struct Own {
 /// faces that a measure could count from.
 fn axes_of(solid: &Solid) -> Option<[Vec3; 3]> {
     match solid {
-        Solid::Primitive(Primitive::Box(_) | Primitive::Revolved(_) | Primitive::Prism { .. }, place) => {
-            Some([0, 1, 2].map(|a| place.turn.column(a).into_owned()))
-        }
+        Solid::Primitive(
+            Primitive::Box(_) | Primitive::Revolved(_) | Primitive::Prism { .. },
+            place,
+        ) => Some([0, 1, 2].map(|a| place.turn.column(a).into_owned())),
         Solid::Difference(base, _) => axes_of(base),
         _ => None,
     }

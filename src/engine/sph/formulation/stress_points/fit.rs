@@ -4,11 +4,6 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 use rayon::prelude::*;
 
-use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
-use numerics::dispatch::{Vectorised, instructions};
-use numerics::kernel::PairScale;
-use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::{Image, ParticleStore, Scatter, material_points, records_of};
 use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::material_update::MaterialUpdate;
 use crate::sph::mid_step::{MidStep, mid_step};
@@ -17,6 +12,11 @@ use crate::sph::normalised::stress_power;
 use crate::sph::scale::with_scale;
 use crate::sph::step::Step;
 use crate::sph::sums::{Sums, sources};
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::kernel::PairScale;
+use numerics::lanes::{F64x8, LANES, Lanes};
+use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
+use particles::{Image, ParticleStore, Scatter, material_points, records_of};
 
 /// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
 /// fits in index of the moments that follow from it.
