@@ -3,11 +3,10 @@
 use serde::Deserialize;
 
 /// The particles that belong to fragments.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Include {
     /// Those that have not failed.
-    #[default]
     Intact,
     /// All.
     All,

@@ -4,7 +4,7 @@ use comm::Comm;
 use files::output::snapshot;
 use model::{
     Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
-    OutputOptions, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    OutputOptions, RunControl, Shape, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use particles::{FIELDS, ParticleStore};
 
@@ -46,7 +46,7 @@ pub fn case() -> Case {
             position: 0.0,
         }],
         loads: Loads::default(),
-        sph: SphOptions::default(),
+        sph: files::input::usual_sph(),
         numerical_limits: model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.3,
