@@ -2,7 +2,11 @@
 
 use std::sync::OnceLock;
 
-use super::lanes::{F64x8, Lanes};
+#[cfg(not(all(target_arch = "x86_64", not(target_feature = "fma"))))]
+use super::lanes::F64x8 as Fallback;
+use super::lanes::Lanes;
+#[cfg(all(target_arch = "x86_64", not(target_feature = "fma")))]
+use super::lanes::portable::Portable as Fallback;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{avx2, avx512};
 
@@ -80,7 +84,7 @@ impl Instructions {
             Self::Avx2 => return unsafe { run_avx2(work) },
             Self::Portable => {}
         }
-        work.run::<F64x8>()
+        work.run::<Fallback>()
     }
 }
 

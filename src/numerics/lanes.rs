@@ -4,6 +4,8 @@
 //! the same bits. [`F64x8`] is the plain form that everybody may use; the pair sweeps are generic
 //! over [`Lanes`] and run on whatever vectors [`super::dispatch`] finds.
 
+pub mod portable;
+
 /// Receivers of a cluster.
 pub const LANES: usize = 8;
 
