@@ -234,17 +234,11 @@ fn options_agree_with_plain_sums() {
         check::<_, CONDUCTION>(&constant, scale);
         check::<_, XSPH>(&constant, scale);
         check::<_, ALL>(&constant, scale);
-        check::<_, ALL>(
-            &cloud(1, 1.8, planes, 42),
-            MeanScale::<1>::new(&Kernel::new(1)),
-        );
-        check::<_, ALL>(
-            &cloud(2, 1.8, planes, 43),
-            MeanScale::<2>::new(&Kernel::new(2)),
-        );
+        check::<_, ALL>(&cloud(1, 1.8, planes, 42), MeanScale::any(&Kernel::new(1)));
+        check::<_, ALL>(&cloud(2, 1.8, planes, 43), MeanScale::any(&Kernel::new(2)));
         check::<_, ALL>(
             &cloud(3, 1.8, planes, 44),
-            MeanScale::<3>::new(&Kernel::new(3)),
+            MeanScale::three(&Kernel::new(3)),
         );
     }
 }
@@ -274,7 +268,7 @@ fn pairs_conserve_momentum_and_energy() {
     cloud.owned = cloud.id.len();
     let found = cloud.find();
     let records = Records::new(&cloud, &found, 78);
-    let scale = MeanScale::<3>::new(&Kernel::new(3));
+    let scale = MeanScale::three(&Kernel::new(3));
     // Force, drift, turn of the drift, power; and their sizes.
     let (mut sums, mut sizes) = ([0.0; 10], [0.0; 10]);
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::numerics::dimension::{Any, Dimension, Three};
 use crate::numerics::lanes::Lanes;
 
 /// Support over smoothing length: no pair farther apart than this many `h_ij` sees each other.
@@ -247,22 +248,35 @@ impl PairScale for ConstantScale {
 
 /// `h_ij = ½(h_i + h_j)` in `D` dimensions.
 #[derive(Debug, Clone, Copy)]
-pub struct MeanScale<const D: usize> {
+pub struct MeanScale<D> {
     normalisation: f64,
+    dimension: D,
 }
 
-impl<const D: usize> MeanScale<D> {
-    /// For a kernel of `D` dimensions.
+impl MeanScale<Three> {
+    /// For a kernel of three dimensions.
     #[must_use]
-    pub fn new(kernel: &Kernel) -> Self {
-        debug_assert_eq!(kernel.dimension(), D);
+    pub fn three(kernel: &Kernel) -> Self {
+        debug_assert_eq!(kernel.dimension(), 3);
         Self {
             normalisation: kernel.normalisation(),
+            dimension: Three,
         }
     }
 }
 
-impl<const D: usize> PairScale for MeanScale<D> {
+impl MeanScale<Any> {
+    /// For any kernel.
+    #[must_use]
+    pub fn any(kernel: &Kernel) -> Self {
+        Self {
+            normalisation: kernel.normalisation(),
+            dimension: Any::new(kernel.dimension()),
+        }
+    }
+}
+
+impl<D: Dimension> PairScale for MeanScale<D> {
     const VARIABLE: bool = true;
 
     #[inline(always)]
@@ -273,7 +287,7 @@ impl<const D: usize> PairScale for MeanScale<D> {
     #[inline(always)]
     fn kernel<V: Lanes>(&self, distance: V, inverse: V) -> PairKernel<V> {
         let square = inverse.mul(inverse);
-        let factor = match D {
+        let factor = match self.dimension.number() {
             1 => square,
             2 => square.mul(inverse),
             _ => square.mul(square),
@@ -303,7 +317,7 @@ impl<const D: usize> PairScale for MeanScale<D> {
     #[inline(always)]
     fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
         let inverse = pairs.inverse_h;
-        let factor = match D {
+        let factor = match self.dimension.number() {
             1 => inverse,
             2 => inverse.mul(inverse),
             _ => inverse.mul(inverse).mul(inverse),

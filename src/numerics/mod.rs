@@ -3,6 +3,7 @@
 pub mod alone;
 pub mod collector;
 pub mod counter;
+pub mod dimension;
 pub mod dispatch;
 pub mod exact_sum;
 pub mod gathered_sums;

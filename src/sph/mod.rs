@@ -20,6 +20,7 @@ pub mod principal;
 mod recording;
 mod records;
 mod rest;
+mod scale;
 mod signal;
 mod smoothing;
 mod step;

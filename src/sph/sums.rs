@@ -1,17 +1,18 @@
-//! What the formulations share: the pair scale, records of stress, and what they are given.
+//! What the formulations share: records of stress, and what they are given.
 
 use rayon::prelude::*;
 
 use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
 use super::rest::Resting;
+use super::scale::Scale;
 use super::step::Side;
 use super::terms::Terms;
 use crate::domain::MirrorForce;
 use crate::material::{Material, NEGLIGIBLE};
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
-use crate::numerics::kernel::{ConstantScale, Kernel, MeanScale};
+use crate::numerics::kernel::Kernel;
 use crate::numerics::lanes::LANES;
 use crate::particles::{GRAIN, Scatter, resize};
 
@@ -49,28 +50,6 @@ impl FromMirrors {
     }
 }
 
-/// The pair scale of a case, chosen once.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Scale {
-    Constant(ConstantScale),
-    One(MeanScale<1>),
-    Two(MeanScale<2>),
-    Three(MeanScale<3>),
-}
-
-/// Calls `$work` with the scale of a case as a concrete type.
-macro_rules! with_scale {
-    ($scale:expr, $name:ident => $work:expr) => {
-        match $scale {
-            $crate::sph::sums::Scale::Constant($name) => $work,
-            $crate::sph::sums::Scale::One($name) => $work,
-            $crate::sph::sums::Scale::Two($name) => $work,
-            $crate::sph::sums::Scale::Three($name) => $work,
-        }
-    };
-}
-pub(super) use with_scale;
-
 impl Sums {
     pub fn new(case: &Case, kernel: &Kernel) -> Self {
         let h = case.bodies.first().map_or(1.0, |b| b.smoothing_length);
@@ -79,12 +58,7 @@ impl Sums {
             .iter()
             .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes.is_none());
         let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
-        let scale = match case.dimension {
-            _ if constant => Scale::Constant(ConstantScale::new(kernel, h)),
-            1 => Scale::One(MeanScale::new(kernel)),
-            2 => Scale::Two(MeanScale::new(kernel)),
-            _ => Scale::Three(MeanScale::new(kernel)),
-        };
+        let scale = Scale::new(kernel, constant.then_some(h));
         Self {
             dimension: case.dimension,
             scale,

@@ -10,8 +10,9 @@ use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{MaterialPoints, Records};
 use crate::sph::material_update::{MaterialUpdate, Show};
 use crate::sph::neighbourhood::{Neighbourhood, Sources};
+use crate::sph::scale::with_scale;
 use crate::sph::step::Step;
-use crate::sph::sums::{Sums, sources, with_scale};
+use crate::sph::sums::{Sums, sources};
 
 /// How a formulation makes velocity gradients.
 pub(super) trait Gradient: Sync {

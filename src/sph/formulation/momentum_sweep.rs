@@ -12,8 +12,9 @@ use crate::particles::{Image, ParticleStore, Scatter, empty};
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscosity};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::{NormalisedRecord, stress_power};
+use crate::sph::scale::with_scale;
 use crate::sph::step::Side;
-use crate::sph::sums::{FromMirrors, Sums, sources, with_scale};
+use crate::sph::sums::{FromMirrors, Sums, sources};
 use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
 
 /// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have

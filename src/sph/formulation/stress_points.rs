@@ -15,10 +15,11 @@ use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::Lanes;
 use crate::particles::{GRAIN, Image, ParticleStore, Scatter, empty, resize};
 use crate::sph::neighbourhood::Sources;
+use crate::sph::scale::with_scale;
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::stress_points::{self, Pull, Pulled, StressPointRecord};
-use crate::sph::sums::{FromMirrors, Sums, scratch_of, sources, with_scale};
+use crate::sph::sums::{FromMirrors, Sums, scratch_of, sources};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]

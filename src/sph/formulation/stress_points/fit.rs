@@ -14,8 +14,9 @@ use crate::sph::material_update::MaterialUpdate;
 use crate::sph::mid_step::{MidStep, mid_step};
 use crate::sph::neighbourhood::Sources;
 use crate::sph::normalised::stress_power;
+use crate::sph::scale::with_scale;
 use crate::sph::step::Step;
-use crate::sph::sums::{Sums, sources, with_scale};
+use crate::sph::sums::{Sums, sources};
 
 /// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
 /// fits in index of the moments that follow from it.
