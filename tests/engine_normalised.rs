@@ -24,12 +24,12 @@ use whipple::neighbours::Chunk;
 use whipple::numerics::dispatch::available;
 use whipple::numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use whipple::numerics::lanes::LANES;
-use whipple::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use whipple::sph::momentum::{Forces, Momentum, Viscosity};
 use whipple::sph::neighbourhood::Sources;
 use whipple::sph::normalised::{
     Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
 };
-use whipple::sph::terms::{NORMALISED, PairTerms};
+use whipple::sph::terms::PairTerms;
 use whipple::step::Simulation;
 
 /// A cloud with all that the sums read.
@@ -176,20 +176,19 @@ impl World {
         corrections: &[Correction],
         mut visit: impl FnMut(&[u32], &Forces),
     ) {
-        let (stresses, normalised): (Vec<_>, Vec<_>) = self
+        let stresses: Vec<_> = self
             .stress
             .iter()
             .zip(corrections)
             .map(|((tensor, density, c), correction)| {
-                let record =
-                    NormalisedRecord::new(0.0, tensor, &correction.matrix, &correction.shift);
-                (StressRecord::new(0.0, tensor, *density, *c), record)
+                let Correction { matrix, shift, .. } = correction;
+                NormalisedRecord::new((0.0, tensor), matrix, shift, [*density, *c])
             })
-            .unzip();
+            .collect();
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: whipple::numerics::dispatch::Instructions| {
-                set.run(Momentum::<S, StressRecord, NORMALISED> {
+                set.run(Momentum::<S, NormalisedRecord, false> {
                     around: Sources {
                         records: &self.found.motion,
                         lengths: self.found.sequence.smoothing_lengths(),
@@ -202,10 +201,7 @@ impl World {
                         beta: 0.0,
                         negligible: 0.0,
                     },
-                    terms: PairTerms {
-                        normalised: &normalised,
-                        ..PairTerms::NONE
-                    },
+                    terms: PairTerms::NONE,
                 })
             };
             let first = sums(available()[0]);

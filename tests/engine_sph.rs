@@ -173,7 +173,7 @@ fn momentum<S: PairScale>(
     neighbours: &[u32],
     scale: S,
 ) -> Forces {
-    set.run(Momentum::<S, StressRecord, 0> {
+    set.run(Momentum::<S, StressRecord, false> {
         around: Sources {
             records: &records.motion,
             lengths: &records.lengths,

@@ -73,8 +73,9 @@ impl Records {
         records
     }
 
-    fn sums<S: PairScale, const TERMS: u8>(
+    fn sums<S: PairScale, const TERMS: bool>(
         &self,
+        terms: u8,
         set: Instructions,
         receivers: [u32; LANES],
         neighbours: &[u32],
@@ -90,8 +91,8 @@ impl Records {
             stresses: &self.stress,
             viscosity: VISCOSITY,
             terms: PairTerms {
+                set: terms,
                 records: &self.options,
-                normalised: &[],
                 inverse_shape: self.inverse_shape,
                 conduction: CONDUCTIVITY,
                 xsph: EPSILON,
@@ -186,13 +187,13 @@ fn bits(forces: &Forces) -> Vec<u64> {
 
 /// The sums of a set of options over all clusters of a cloud: equal to the plain sums, and equal
 /// bits for all instruction sets.
-fn check<S: PairScale, const TERMS: u8>(cloud: &Cloud, scale: S) {
+fn check<S: PairScale>(terms: u8, cloud: &Cloud, scale: S) {
     let kernel = Kernel::new(cloud.dimension);
     let found = cloud.find();
     let records = Records::new(cloud, &found, 77);
     let sets = available();
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-        let sums = records.sums::<S, TERMS>(sets[0], cluster.receivers, list, scale);
+        let sums = records.sums::<S, true>(terms, sets[0], cluster.receivers, list, scale);
         for k in 0..cluster.lanes {
             let group = found.sequence.group(cluster.group);
             let slow = plain(
@@ -200,12 +201,12 @@ fn check<S: PairScale, const TERMS: u8>(cloud: &Cloud, scale: S) {
                 group,
                 &kernel,
                 cluster.receivers[k] as usize,
-                TERMS,
+                terms,
             );
             // As in `engine_sph`: some tens of roundings a term.
             let close = |value: f64, reference: f64, size: f64| {
                 let error = (value - reference).abs();
-                assert!(error <= 3e-14 * size, "{TERMS}: {value} is not {reference}");
+                assert!(error <= 3e-14 * size, "{terms}: {value} is not {reference}");
             };
             for a in 0..3 {
                 close(
@@ -218,7 +219,7 @@ fn check<S: PairScale, const TERMS: u8>(cloud: &Cloud, scale: S) {
             close(sums.power.0[k], slow.power, slow.sizes[1]);
         }
         for &set in &sets {
-            let other = records.sums::<S, TERMS>(set, cluster.receivers, list, scale);
+            let other = records.sums::<S, true>(terms, set, cluster.receivers, list, scale);
             assert_eq!(bits(&other), bits(&sums), "{}", set.name());
         }
     }
@@ -229,34 +230,71 @@ fn options_agree_with_plain_sums() {
     for planes in [0, 1] {
         let constant = cloud(3, 1.0, planes, 41);
         let scale = ConstantScale::new(&Kernel::new(3), constant.smoothing_length[0]);
-        check::<_, ARTIFICIAL_STRESS>(&constant, scale);
-        check::<_, BALSARA>(&constant, scale);
-        check::<_, CONDUCTION>(&constant, scale);
-        check::<_, XSPH>(&constant, scale);
-        check::<_, ALL>(&constant, scale);
-        check::<_, ALL>(&cloud(1, 1.8, planes, 42), MeanScale::any(&Kernel::new(1)));
-        check::<_, ALL>(&cloud(2, 1.8, planes, 43), MeanScale::any(&Kernel::new(2)));
-        check::<_, ALL>(
+        check(ARTIFICIAL_STRESS, &constant, scale);
+        check(BALSARA, &constant, scale);
+        check(CONDUCTION, &constant, scale);
+        check(XSPH, &constant, scale);
+        check(ALL, &constant, scale);
+        check(
+            ALL,
+            &cloud(1, 1.8, planes, 42),
+            MeanScale::any(&Kernel::new(1)),
+        );
+        check(
+            ALL,
+            &cloud(2, 1.8, planes, 43),
+            MeanScale::any(&Kernel::new(2)),
+        );
+        check(
+            ALL,
             &cloud(3, 1.8, planes, 44),
             MeanScale::three(&Kernel::new(3)),
         );
     }
 }
 
-/// Pair terms that are off have neutral data where sums know them: no bit differs from plain sums.
+/// Pair terms that are off change no bit of plain sums, whatever particles show; those that are on with neutral data
+/// change none either.
 #[test]
-fn neutral_options_change_no_bit() {
+fn terms_that_are_off_or_neutral_change_no_bit() {
     let cloud = cloud(3, 1.0, 1, 46);
     let found = cloud.find();
     let mut records = Records::new(&cloud, &found, 79);
-    records.options.fill(TermRecord::NEUTRAL);
     let scale = ConstantScale::new(&Kernel::new(3), cloud.smoothing_length[0]);
-    for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-        let set = available()[0];
-        let plain = records.sums::<_, 0>(set, cluster.receivers, list, scale);
+    let all = |records: &Records,
+               sums: fn(&Records, [u32; LANES], &[u32], ConstantScale) -> Forces| {
+        let clusters = found.clusters.chunks().iter().flat_map(Chunk::iter);
+        clusters
+            .flat_map(|(cluster, list, _)| bits(&sums(records, cluster.receivers, list, scale)))
+            .collect::<Vec<_>>()
+    };
+    let plain = all(&records, |records, receivers, list, scale| {
+        records.sums::<_, false>(0, available()[0], receivers, list, scale)
+    });
+    let off = all(&records, |records, receivers, list, scale| {
+        records.sums::<_, true>(0, available()[0], receivers, list, scale)
+    });
+    assert_eq!(off, plain);
+    records.options.fill(TermRecord::NEUTRAL);
+    let neutral = all(&records, |records, receivers, list, scale| {
+        records.sums::<_, true>(RECORDED, available()[0], receivers, list, scale)
+    });
+    assert_eq!(neutral, plain);
+}
 
-        let neutral = records.sums::<_, RECORDED>(set, cluster.receivers, list, scale);
-        assert_eq!(bits(&neutral), bits(&plain));
+#[test]
+fn a_number_of_dimensions_means_the_same_known_early_or_late() {
+    let cloud = cloud(3, 1.7, 1, 47);
+    let found = cloud.find();
+    let records = Records::new(&cloud, &found, 80);
+    let kernel = Kernel::new(3);
+    let (early, late) = (MeanScale::three(&kernel), MeanScale::any(&kernel));
+    for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
+        for set in available() {
+            let early = records.sums::<_, true>(ALL, set, cluster.receivers, list, early);
+            let late = records.sums::<_, true>(ALL, set, cluster.receivers, list, late);
+            assert_eq!(bits(&early), bits(&late));
+        }
     }
 }
 
@@ -272,7 +310,7 @@ fn pairs_conserve_momentum_and_energy() {
     // Force, drift, turn of the drift, power; and their sizes.
     let (mut sums, mut sizes) = ([0.0; 10], [0.0; 10]);
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-        let all = records.sums::<_, ALL>(available()[0], cluster.receivers, list, scale);
+        let all = records.sums::<_, true>(ALL, available()[0], cluster.receivers, list, scale);
         for k in 0..cluster.lanes {
             let MotionRecord {
                 mass, velocity: v, ..

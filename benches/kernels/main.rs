@@ -93,7 +93,7 @@ fn momentum_of<R: PairStress>(criterion: &mut Criterion, name: &str, record: R) 
         negligible: 0.0,
     };
     sweep(criterion, name, |set, around| {
-        black_box(set.run(Momentum::<_, R, 0> {
+        black_box(set.run(Momentum::<_, R, false> {
             around,
             stresses: &stresses,
             viscosity,

@@ -18,7 +18,6 @@ pub mod normalised;
 mod phase;
 pub mod principal;
 mod recording;
-mod records;
 mod rest;
 mod scale;
 mod signal;
@@ -26,6 +25,7 @@ mod smoothing;
 mod step;
 pub mod stress_points;
 mod sums;
+mod term_records;
 pub mod terms;
 mod virial;
 

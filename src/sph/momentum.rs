@@ -2,8 +2,7 @@
 //! viscosity (physics page, section 2).
 
 use super::neighbourhood::{Divisor, Neighbourhood, Separation, gather, gather_all, records};
-use super::normalised::NormalisedSums;
-use super::terms::{NORMALISED, PairTerms, SHAPED, TermRecord, TermSums};
+use super::terms::{PairTerms, TermRecord, TermSums};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::store_all;
@@ -65,6 +64,9 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// Density (kg/m³).
     fn density(&self) -> f64;
 
+    /// Sound speed (m/s).
+    fn sound_speed(&self) -> f64;
+
     /// The torque (N m) that pairs of eight receivers exert on each other without these neighbours, where
     /// none is left with them; none where angular momentum is not kept anyway.
     #[must_use]
@@ -73,7 +75,7 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     }
 
     /// The sums of eight receivers.
-    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces;
+    fn sum<V: Lanes, S: PairScale, const TERMS: bool>(sums: &Momentum<S, Self, TERMS>) -> Forces;
 }
 
 /// Artificial viscosity of eight receivers.
@@ -141,7 +143,7 @@ impl<V: Lanes> Viscous<V> {
     /// Of the receivers with a neighbour of this density and sound speed at the relative velocity
     /// `v`, with the inverse of their [`SoftSquare`].
     #[inline(always)]
-    pub fn pair<const TERMS: u8>(
+    pub fn pair<const TERMS: bool>(
         &self,
         terms: &TermSums<V, TERMS>,
         (separation, h, inverse): (&Separation<V>, V, V),
@@ -182,15 +184,15 @@ impl<V: Lanes> ViscousPair<V> {
     }
 }
 
-/// The sums over pairs. `TERMS` is a set of the constants of [`super::terms`].
-pub struct Momentum<'a, S, R, const TERMS: u8> {
+/// The sums over pairs; `TERMS` tells whether there are pair terms.
+pub struct Momentum<'a, S, R, const TERMS: bool> {
     /// The receivers and their neighbours.
     pub around: Neighbourhood<'a, S>,
     /// Stresses of all particles and images.
     pub stresses: &'a [R],
     /// Artificial viscosity.
     pub viscosity: Viscosity,
-    /// What the pair terms in use need.
+    /// The pair terms in use, and what they need.
     pub terms: PairTerms<'a>,
 }
 
@@ -219,12 +221,139 @@ impl Forces {
     };
 }
 
-impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for Momentum<'_, S, R, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for Momentum<'_, S, R, TERMS> {
     type Output = Forces;
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Forces {
         R::sum::<V, S, TERMS>(&self)
+    }
+}
+
+/// The stress of eight receivers, with that of one neighbour after the other.
+pub(super) trait OwnStress<V: Lanes>: Sized {
+    /// What particles show.
+    type Record: PairStress;
+    /// Whether it needs the kernel's value.
+    const SHAPED: bool;
+
+    /// Of receivers that show this.
+    fn begin<S: PairScale>(around: &Neighbourhood<S>, own: &[&Self::Record; LANES]) -> Self;
+
+    /// What of it, with the viscosity `Π`, acts over density squared along plain gradients: components xx, yy,
+    /// zz, xy, xz, yz (Pa m⁶/kg²).
+    fn plain(&self, other: &Self::Record, pi: V) -> [V; 6];
+
+    /// Sums what else there is, of pairs with a neighbour of this volume (m^d) at a separation, with the kernel's slope
+    /// and, if that is needed, its value.
+    fn pull(&mut self, other: &Self::Record, now: (&Separation<V>, f64), kernel: (V, V));
+
+    /// Adds that to the acceleration.
+    fn add_to(&self, acceleration: [V; 3]) -> [V; 3];
+}
+
+/// The sums over pairs of such receivers.
+#[inline(always)]
+pub(super) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
+    sums: &Momentum<S, O::Record, TERMS>,
+) -> Forces {
+    let around = &sums.around;
+    // A particle whose position is NaN.
+    if around.neighbours.is_empty() {
+        return Forces::NONE;
+    }
+    let (position, velocity) = around.motion::<V>();
+    let stresses = records(sums.stresses, &around.receivers);
+    let mut own = O::begin(around, &stresses);
+    let rho_i = gather::<V, _>(&stresses, PairStress::density);
+    let c_i = gather::<V, _>(&stresses, PairStress::sound_speed);
+    let zero = V::splat(0.0);
+    let viscous = Viscous::begin(sums.viscosity, rho_i, c_i);
+    let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
+    let mut acceleration = [zero; 3];
+    let mut power = zero;
+    let mut fastest = zero;
+    let divisor = SoftSquare {
+        rho: rho_i,
+        stresses: sums.stresses,
+    };
+    for pair in around.pairs_beside(&position, divisor) {
+        let (index, source, now, kernel) =
+            (pair.index, pair.source, &pair.separation, &pair.kernel);
+        let state = &sums.stresses[index];
+        let shown = sums.terms.record::<TERMS>(index);
+        let r = now.r;
+        let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
+        let v = [along(0), along(1), along(2)];
+        let state_of = (state.density(), state.sound_speed());
+        let viscous = viscous.pair(&terms, (now, pair.h, pair.beside), &v, state_of, shown);
+        fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
+        let mut stress = own.plain(state, viscous.pi);
+        if O::SHAPED || terms.need_shape() {
+            let scale = &around.sources.scale;
+            let shape = scale.shape(kernel);
+            terms.repel(&mut stress, shown, shape);
+            if O::SHAPED {
+                let values = (kernel.slope, scale.value(kernel, shape));
+                own.pull(state, (now, source.volume), values);
+            }
+            let shares = (source.mass, viscous.inverse_density);
+            terms.follow(&v, (scale, kernel, shape), shares);
+        }
+        let [xx, yy, zz, xy, xz, yz] = stress;
+        let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
+        let traction = [
+            xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
+            xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
+            xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
+        ];
+        let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
+        let work = terms.conduct(work, shown, || viscous.heat_speed(now));
+        power = work.mul_add(weight, power);
+        for a in 0..3 {
+            acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
+        }
+    }
+    Forces {
+        acceleration: store_all(&own.add_to(acceleration)),
+        power: zero.sub(power.mul(V::splat(0.5))).store(),
+        approach: zero.sub(fastest).store(),
+        correction: store_all(&terms.correction()),
+    }
+}
+
+/// Stresses that add up.
+struct Added<V> {
+    normal: [V; 3],
+    shear: [V; 3],
+}
+
+impl<V: Lanes> OwnStress<V> for Added<V> {
+    type Record = StressRecord;
+    const SHAPED: bool = false;
+
+    #[inline(always)]
+    fn begin<S: PairScale>(_: &Neighbourhood<S>, own: &[&StressRecord; LANES]) -> Self {
+        Self {
+            normal: gather_all(own, |record, a| record.stress_over_density2[a]),
+            shear: gather_all(own, |record, a| record.stress_over_density2[3 + a]),
+        }
+    }
+
+    #[inline(always)]
+    fn plain(&self, other: &StressRecord, pi: V) -> [V; 6] {
+        let s = |c: usize| V::splat(other.stress_over_density2[c]);
+        let pull = |a: usize| self.normal[a].add(s(a)).sub(pi);
+        let slide = |a: usize| self.shear[a].add(s(3 + a));
+        [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)]
+    }
+
+    #[inline(always)]
+    fn pull(&mut self, _: &StressRecord, _: (&Separation<V>, f64), _: (V, V)) {}
+
+    #[inline(always)]
+    fn add_to(&self, acceleration: [V; 3]) -> [V; 3] {
+        acceleration
     }
 }
 
@@ -242,78 +371,12 @@ impl PairStress for StressRecord {
     }
 
     #[inline(always)]
-    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
-        let around = &sums.around;
-        // A particle whose position is NaN.
-        if around.neighbours.is_empty() {
-            return Forces::NONE;
-        }
-        let (position, velocity) = around.motion::<V>();
-        let stresses = records(sums.stresses, &around.receivers);
-        let normal = gather_all::<V, _, 3>(&stresses, |record, a| record.stress_over_density2[a]);
-        let shear =
-            gather_all::<V, _, 3>(&stresses, |record, a| record.stress_over_density2[3 + a]);
-        let rho_i = gather::<V, _>(&stresses, |record| record.density);
-        let c_i = gather::<V, _>(&stresses, |record| record.sound_speed);
-        let zero = V::splat(0.0);
-        let viscous = Viscous::begin(sums.viscosity, rho_i, c_i);
-        let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
-        let mut corrected = NormalisedSums::<V, TERMS>::begin(&sums.terms, around);
-        let mut acceleration = [zero; 3];
-        let mut power = zero;
-        let mut fastest = zero;
-        let divisor = SoftSquare {
-            rho: rho_i,
-            stresses: sums.stresses,
-        };
-        for pair in around.pairs_beside(&position, divisor) {
-            let (index, source, now, kernel) =
-                (pair.index, pair.source, &pair.separation, &pair.kernel);
-            let state = &sums.stresses[index];
-            let shown = sums.terms.record::<TERMS>(index);
-            let r = now.r;
-            let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
-            let v = [along(0), along(1), along(2)];
-            let state_of = (state.density, state.sound_speed);
-            let viscous = viscous.pair(&terms, (now, pair.h, pair.beside), &v, state_of, shown);
-            let pi = viscous.pi;
-            fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
-            let s = |c: usize| V::splat(state.stress_over_density2[c]);
-            let pull = |a: usize| normal[a].add(s(a)).sub(pi);
-            let slide = |a: usize| shear[a].add(s(3 + a));
-            let mut stress = if TERMS & NORMALISED == 0 {
-                [pull(0), pull(1), pull(2), slide(0), slide(1), slide(2)]
-            } else {
-                [zero.sub(pi), zero.sub(pi), zero.sub(pi), zero, zero, zero]
-            };
-            if TERMS & SHAPED != 0 {
-                let shape = around.sources.scale.shape(kernel);
-                terms.repel(&mut stress, shown, shape);
-                let w = around.sources.scale.value(kernel, shape);
-                let other = sums.terms.normalised::<TERMS>(index);
-                corrected.pull(other, now, kernel.slope, w, source.volume);
-                let w = w.mul(V::splat(source.mass));
-                terms.follow(&v, w.mul(viscous.inverse_density));
-            }
-            let [xx, yy, zz, xy, xz, yz] = stress;
-            let weight = now.inverse.mul(V::splat(source.mass)).mul(kernel.slope);
-            let traction = [
-                xx.mul_add(r[0], xy.mul_add(r[1], xz.mul(r[2]))),
-                xy.mul_add(r[0], yy.mul_add(r[1], yz.mul(r[2]))),
-                xz.mul_add(r[0], yz.mul_add(r[1], zz.mul(r[2]))),
-            ];
-            let work = traction[2].mul_add(v[2], traction[1].mul_add(v[1], traction[0].mul(v[0])));
-            let work = terms.conduct(work, shown, || viscous.heat_speed(now));
-            power = work.mul_add(weight, power);
-            for a in 0..3 {
-                acceleration[a] = traction[a].mul_add(weight, acceleration[a]);
-            }
-        }
-        Forces {
-            acceleration: store_all(&corrected.add_to(acceleration)),
-            power: zero.sub(power.mul(V::splat(0.5))).store(),
-            approach: zero.sub(fastest).store(),
-            correction: store_all(&terms.correction()),
-        }
+    fn sound_speed(&self) -> f64 {
+        self.sound_speed
+    }
+
+    #[inline(always)]
+    fn sum<V: Lanes, S: PairScale, const TERMS: bool>(sums: &Momentum<S, Self, TERMS>) -> Forces {
+        sum::<V, S, Added<V>, TERMS>(sums)
     }
 }

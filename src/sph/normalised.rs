@@ -9,9 +9,11 @@
 //! the factor `1/s` drops out. All of it is linear in sums over pairs, so one sweep makes the
 //! corrected velocity gradient; only the forces need the corrections of neighbours.
 
-use super::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
-pub use super::records::NormalisedRecord;
-use super::terms::{NORMALISED, PairTerms};
+mod forces;
+
+pub use forces::NormalisedRecord;
+
+use super::neighbourhood::Neighbourhood;
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::store_all;
@@ -229,76 +231,4 @@ pub fn stress_power(pressure: f64, deviatoric: &[f64; 6], l: &[f64; 9], density:
     let normal = (xx - pressure) * l[0] + (yy - pressure) * l[4] + (zz - pressure) * l[8];
     let shear = xy * (l[1] + l[3]) + xz * (l[2] + l[6]) + yz * (l[5] + l[7]);
     (normal + shear) / density
-}
-
-/// Accelerations of eight receivers by corrected gradients:
-/// `1/ρ_i Σ V_j [(P_i + P_j) ∇W_ij − W_ij (P_i γ_i − P_j γ_j)]`.
-pub(super) struct NormalisedSums<V, const TERMS: u8> {
-    stress: [V; 9],
-    shift: [V; 3],
-    /// `1/ρ_i`.
-    specific_volume: V,
-    sum: [V; 3],
-}
-
-impl<V: Lanes, const TERMS: u8> NormalisedSums<V, TERMS> {
-    #[inline(always)]
-    pub(super) fn begin<S: PairScale>(terms: &PairTerms, around: &Neighbourhood<S>) -> Self {
-        let zero = V::splat(0.0);
-        if TERMS & NORMALISED == 0 {
-            return Self {
-                stress: [zero; 9],
-                shift: [zero; 3],
-                specific_volume: zero,
-                sum: [zero; 3],
-            };
-        }
-        let all = records(terms.normalised, &around.receivers);
-        let motion = records(around.sources.records, &around.receivers);
-        Self {
-            stress: gather_all(&all, |record, c| record.stress[c]),
-            shift: gather_all(&all, |record, a| record.shift[a]),
-            specific_volume: gather(&motion, |record| record.volume / record.mass),
-            sum: [zero; 3],
-        }
-    }
-
-    /// Adds pairs with the neighbour at `index`, of kernel slopes `W'` and values `W`.
-    #[inline(always)]
-    pub(super) fn pull(
-        &mut self,
-        other: &NormalisedRecord,
-        now: &Separation<V>,
-        slope: V,
-        value: V,
-        volume: f64,
-    ) {
-        if TERMS & NORMALISED == 0 {
-            return;
-        }
-        let volume = V::splat(volume);
-        let weight = now.inverse.mul(volume).mul(slope);
-        let share = value.mul(volume);
-        let r = now.r;
-        for a in 0..3 {
-            let both = |b: usize| self.stress[3 * a + b].add(V::splat(other.stress[3 * a + b]));
-            let traction = both(2).mul_add(r[2], both(1).mul_add(r[1], both(0).mul(r[0])));
-            let step = self.shift[a].sub(V::splat(other.shift[a]));
-            self.sum[a] = step.neg_mul_add(share, traction.mul_add(weight, self.sum[a]));
-        }
-    }
-
-    /// With what conventional sums give.
-    #[inline(always)]
-    pub(super) fn add_to(&self, acceleration: [V; 3]) -> [V; 3] {
-        if TERMS & NORMALISED == 0 {
-            return acceleration;
-        }
-        let [x, y, z] = acceleration;
-        [
-            self.sum[0].mul_add(self.specific_volume, x),
-            self.sum[1].mul_add(self.specific_volume, y),
-            self.sum[2].mul_add(self.specific_volume, z),
-        ]
-    }
 }

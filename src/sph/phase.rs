@@ -11,7 +11,7 @@ use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::step::{Side, Step};
 use super::sums::Sums;
-use super::terms;
+use super::term_records;
 use crate::domain::{MirrorForce, Shown};
 use crate::loads::Loads;
 use crate::model::{Case, SphForm};
@@ -95,11 +95,11 @@ impl Sph {
     pub fn bytes_of_records(case: &Case) -> usize {
         // Beyond the records of stress, which all forms have.
         let corrected = match case.sph.form {
-            SphForm::Normalised => size_of::<NormalisedRecord>(),
+            SphForm::Normalised => size_of::<NormalisedRecord>() - size_of::<StressRecord>(),
             SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
-        terms::bytes_of_records(&case.sph) + corrected
+        term_records::bytes_of_records(&case.sph) + corrected
     }
 
     /// Memory for so many images that is free until [`Self::rates`].

@@ -7,7 +7,7 @@ use super::neighbourhood::Sources;
 use super::rest::Resting;
 use super::scale::Scale;
 use super::step::Side;
-use super::terms::Terms;
+use super::term_records::Terms;
 use crate::domain::MirrorForce;
 use crate::material::{Material, NEGLIGIBLE};
 use crate::model::{Case, SmoothingLength};

@@ -171,7 +171,7 @@ impl World {
         let chunks = self.found.clusters.chunks();
         for (cluster, list, _) in chunks.iter().flat_map(Chunk::iter) {
             let sums = |set: Instructions| {
-                set.run(Momentum::<S, CorrectedRecord, 0> {
+                set.run(Momentum::<S, CorrectedRecord, false> {
                     around: self.sources(scale).around(cluster.receivers, list),
                     stresses: &records,
                     viscosity: Viscosity {

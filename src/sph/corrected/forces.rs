@@ -1,14 +1,13 @@
 //! The second sweep: what particles show of their stress, and its forces.
 
 use super::add_moment;
-use crate::domain::Mirrors;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use crate::numerics::lanes::{F64x8, LANES, Lanes};
 use crate::numerics::matrix;
 use crate::sph::momentum::{Forces, Momentum, PairStress, SoftSquare, Viscous};
 use crate::sph::neighbourhood::{Neighbourhood, gather, gather_all, records};
-use crate::sph::terms::{ARTIFICIAL_STRESS, SHAPED, TermSums};
+use crate::sph::terms::{ARTIFICIAL_STRESS, TermSums};
 
 /// What a particle shows to its neighbours of its stress.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -47,16 +46,6 @@ impl CorrectedRecord {
             sound_speed,
         }
     }
-
-    /// What the image `code` of a particle shows that shows this.
-    #[must_use]
-    pub fn reflected(&self, code: u8) -> Self {
-        Self {
-            stress: Mirrors::reflect_tensor(&self.stress, code),
-            hourglass: Mirrors::reflect_vector(&self.hourglass, code),
-            ..*self
-        }
-    }
 }
 
 impl PairStress for CorrectedRecord {
@@ -70,6 +59,11 @@ impl PairStress for CorrectedRecord {
     #[inline(always)]
     fn density(&self) -> f64 {
         self.density
+    }
+
+    #[inline(always)]
+    fn sound_speed(&self) -> f64 {
+        self.sound_speed
     }
 
     /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
@@ -97,7 +91,7 @@ impl PairStress for CorrectedRecord {
 
     /// `dv/dt = 1/ρ_i Σ V_j (P_i + P_j − ρ_i ρ_j (Π_ij I + R_ij f⁴)) ∇W_ij`.
     #[inline(always)]
-    fn sum<V: Lanes, S: PairScale, const TERMS: u8>(sums: &Momentum<S, Self, TERMS>) -> Forces {
+    fn sum<V: Lanes, S: PairScale, const TERMS: bool>(sums: &Momentum<S, Self, TERMS>) -> Forces {
         let around = &sums.around;
         // A particle whose position is NaN.
         if around.neighbours.is_empty() {
@@ -153,9 +147,10 @@ impl PairStress for CorrectedRecord {
                 .mul(V::splat(source.volume))
                 .mul(kernel.slope);
             let steep = [r[0].mul(weight), r[1].mul(weight), r[2].mul(weight)];
-            if TERMS & SHAPED != 0 {
-                let shape = around.sources.scale.shape(kernel);
-                if TERMS & ARTIFICIAL_STRESS != 0 {
+            if terms.need_shape() {
+                let scale = &around.sources.scale;
+                let shape = scale.shape(kernel);
+                if terms.has(ARTIFICIAL_STRESS) {
                     let mut extra = [zero; 6];
                     terms.repel(&mut extra, shown, shape);
                     for part in &mut extra {
@@ -167,9 +162,8 @@ impl PairStress for CorrectedRecord {
                         lost = t[a].mul_add(v[a], lost);
                     }
                 }
-                let w = around.sources.scale.value(kernel, shape);
-                let w = w.mul(V::splat(source.mass));
-                terms.follow(&v, w.mul(now.inverse_density));
+                let shares = (source.mass, now.inverse_density);
+                terms.follow(&v, (scale, kernel, shape), shares);
             }
             lost = terms.conduct(lost, shown, || now.heat_speed(separation).mul(both));
             power = lost.mul_add(weight, power);

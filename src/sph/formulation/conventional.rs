@@ -44,8 +44,7 @@ impl Formulation for Conventional {
     ) {
         fill_stresses(&mut self.records, particles, lists, side);
         sums.terms.show(particles, lists, side);
-        let set = sums.terms.set();
-        accelerate(sums, (set, &self.records, &[]), particles, lists, side);
+        accelerate(sums, &self.records, particles, lists, side);
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {

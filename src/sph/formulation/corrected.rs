@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::domain::Shown;
+use crate::domain::{Mirrors, Shown};
 use crate::material::{FAILED, NEGLIGIBLE, PointBatch};
 use crate::model::Case;
 use crate::neighbours::{Among, Cluster, Lists};
@@ -107,12 +107,11 @@ impl Formulation for Corrected {
                     None => unsafe { records.read(places[base] as usize) },
                     Some(k) => heard[k],
                 };
-                shown.reflected(code)
+                reflected(&shown, code)
             },
         );
         sums.terms.show(particles, lists, side);
-        let set = sums.terms.set();
-        accelerate(sums, (set, &self.records, &[]), particles, lists, side);
+        accelerate(sums, &self.records, particles, lists, side);
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {
@@ -207,6 +206,15 @@ impl Gradient for CorrectedGradients<'_> {
             *self.records.slot(place) =
                 CorrectedRecord::new(&[0.0; 9], &[0.0; 3], self.hourglass, state);
         }
+    }
+}
+
+/// What the image `code` of a particle shows that shows this.
+fn reflected(record: &CorrectedRecord, code: u8) -> CorrectedRecord {
+    CorrectedRecord {
+        stress: Mirrors::reflect_tensor(&record.stress, code),
+        hourglass: Mirrors::reflect_vector(&record.hourglass, code),
+        ..*record
     }
 }
 

@@ -11,17 +11,16 @@ use crate::numerics::lanes::Lanes;
 use crate::particles::{Image, ParticleStore, Scatter, empty};
 use crate::sph::momentum::{Forces, Momentum, PairStress, Viscosity};
 use crate::sph::neighbourhood::Sources;
-use crate::sph::normalised::{NormalisedRecord, stress_power};
+use crate::sph::normalised::stress_power;
 use crate::sph::scale::with_scale;
 use crate::sph::step::Side;
 use crate::sph::sums::{FromMirrors, Sums, sources};
-use crate::sph::terms::{NORMALISED, PairTerms, XSPH, with_terms};
+use crate::sph::terms::{PairTerms, with_terms};
 
-/// The sweep over the clusters of a side with a set of pair terms, after stresses and terms have
-/// been shown; `normalised` holds the stresses along corrected gradients, if any.
+/// The sweep over the clusters of a side, after stresses and pair terms have been shown.
 pub(super) fn accelerate<R: PairStress>(
     sums: &mut Sums,
-    (set, stresses, normalised): (u8, &[R], &[NormalisedRecord]),
+    stresses: &[R],
     particles: &mut ParticleStore,
     lists: &Lists,
     side: Side,
@@ -42,7 +41,7 @@ pub(super) fn accelerate<R: PairStress>(
         stresses,
         mirrored: lists.sequence().mirrored(),
         viscosity: *viscosity,
-        terms: terms.of_sums(normalised),
+        terms: terms.of_sums(),
     };
     with_scale!(*scale, scale => chunks
     .par_iter()
@@ -52,7 +51,7 @@ pub(super) fn accelerate<R: PairStress>(
         if side == Side::Inner {
             empty(&mut from_mirrors.forces);
         }
-        with_terms!(set, TERMS => instructions.run(MomentumChunk::<_, R, TERMS> {
+        with_terms!(shown.terms.set, TERMS => instructions.run(MomentumChunk::<_, R, TERMS> {
             chunk, side, motion: sources(lists, scale), sources: shown, target, from_mirrors,
         }));
     }));
@@ -97,7 +96,7 @@ impl<'a> ForceTarget<'a> {
     }
 
     #[inline(always)]
-    fn store<R: PairStress, const TERMS: u8>(&self, cluster: &Cluster, forces: &Forces) {
+    fn store<R: PairStress, const TERMS: bool>(&self, cluster: &Cluster, forces: &Forces) {
         for k in 0..cluster.lanes {
             let i = self.images[cluster.receivers[k] as usize].base();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -105,12 +104,10 @@ impl<'a> ForceTarget<'a> {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
                 *self.power.slot(i) = forces.power.0[k];
                 *self.approach.slot(i) = forces.approach.0[k];
-                if R::CORRECTED || TERMS & NORMALISED != 0 {
+                if R::CORRECTED {
                     *self.power.slot(i) += self.stress_power.of(i);
                 }
-                if TERMS & XSPH != 0
-                    && let Some(correction) = &self.correction
-                {
+                if TERMS && let Some(correction) = &self.correction {
                     *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
                 }
             }
@@ -154,8 +151,8 @@ impl<'a> StressPower<'a> {
     }
 }
 
-/// The second sweep over one task's clusters, with a set of pair terms.
-struct MomentumChunk<'a, S, R, const TERMS: u8> {
+/// The second sweep over one task's clusters.
+struct MomentumChunk<'a, S, R, const TERMS: bool> {
     chunk: &'a Chunk,
     side: Side,
     motion: Sources<'a, S>,
@@ -164,7 +161,7 @@ struct MomentumChunk<'a, S, R, const TERMS: u8> {
     from_mirrors: &'a mut FromMirrors,
 }
 
-impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<'_, S, R, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChunk<'_, S, R, TERMS> {
     type Output = ();
 
     #[inline(always)]
@@ -205,7 +202,7 @@ impl<S: PairScale, R: PairStress, const TERMS: u8> Vectorised for MomentumChunk<
     }
 }
 
-impl<S: PairScale, R: PairStress, const TERMS: u8> MomentumChunk<'_, S, R, TERMS> {
+impl<S: PairScale, R: PairStress, const TERMS: bool> MomentumChunk<'_, S, R, TERMS> {
     #[inline(always)]
     fn sum<V: Lanes>(
         motion: Sources<S>,

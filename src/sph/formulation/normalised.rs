@@ -6,20 +6,17 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use super::stresses::{ShowStress, fill_stresses};
 use crate::domain::Mirrors;
 use crate::neighbours::{Among, Cluster, Lists};
 use crate::numerics::dispatch::Vectorised;
 use crate::numerics::kernel::PairScale;
 use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{GRAIN, Image, ParticleStore, Scatter, material_points, records_of, resize};
-use crate::sph::momentum::StressRecord;
 use crate::sph::neighbourhood::Neighbourhood;
 use crate::sph::normalised::{NormalisedGradient, NormalisedRecord};
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
 use crate::sph::sums::{Sums, scratch_of};
-use crate::sph::terms::NORMALISED;
 
 /// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
 const SURFACE_CORRECTION: f64 = 2.0;
@@ -27,7 +24,6 @@ const SURFACE_CORRECTION: f64 = 2.0;
 /// The normalised formulation.
 #[derive(Debug, Default)]
 pub struct Normalised {
-    stresses: Vec<StressRecord>,
     records: Vec<NormalisedRecord>,
 }
 
@@ -45,7 +41,6 @@ impl Formulation for Normalised {
             matrix: Scatter::new(&mut particles.gradient_correction),
             shift: Scatter::new(&mut particles.gradient_shift),
             norm: Scatter::new(&mut particles.correction_norm),
-            stresses: ShowStress::new(&mut self.stresses),
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
@@ -61,7 +56,6 @@ impl Formulation for Normalised {
         lists: &Lists,
         side: Side,
     ) {
-        fill_stresses(&mut self.stresses, particles, lists, side);
         let images = lists.images();
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
@@ -71,23 +65,15 @@ impl Formulation for Normalised {
             }
         });
         sums.terms.show(particles, lists, side);
-        let set = sums.terms.set() | NORMALISED;
-        accelerate(
-            sums,
-            (set, &self.stresses, &self.records),
-            particles,
-            lists,
-            side,
-        );
+        accelerate(sums, &self.records, particles, lists, side);
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {
-        scratch_of(&mut self.stresses, images)
+        scratch_of(&mut self.records, images)
     }
 
     fn memory(&self) -> usize {
-        self.stresses.capacity() * size_of::<StressRecord>()
-            + self.records.capacity() * size_of::<NormalisedRecord>()
+        self.records.capacity() * size_of::<NormalisedRecord>()
     }
 }
 
@@ -108,12 +94,11 @@ struct NormalisedGradients<'a> {
     matrix: Scatter<'a, [f64; 9]>,
     shift: Scatter<'a, [f64; 3]>,
     norm: Scatter<'a, f64>,
-    stresses: ShowStress<'a>,
 }
 
 impl Gradient for NormalisedGradients<'_> {
     type Show<'b, S: PairScale>
-        = &'b ShowStress<'b>
+        = ()
     where
         Self: 'b;
 
@@ -124,7 +109,7 @@ impl Gradient for NormalisedGradients<'_> {
         _: Among,
         around: Neighbourhood<'b, S>,
         _: impl FnOnce() -> u8,
-    ) -> ([F64x8; 9], &'b ShowStress<'b>) {
+    ) -> ([F64x8; 9], ()) {
         let sums = NormalisedGradient {
             around,
             dimension: self.dimension,
@@ -139,7 +124,7 @@ impl Gradient for NormalisedGradients<'_> {
                 *self.norm.slot(i) = correction.norm;
             }
         }
-        (corrected.gradient, &self.stresses)
+        (corrected.gradient, ())
     }
 }
 
@@ -147,13 +132,14 @@ impl Gradient for NormalisedGradients<'_> {
 fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
     let (i, code) = (image.base(), image.code());
     let own = NormalisedRecord::new(
-        particles.pressure[i],
-        &particles.deviatoric_stress[i],
+        (particles.pressure[i], &particles.deviatoric_stress[i]),
         &particles.gradient_correction[i],
         &particles.gradient_shift[i],
+        [particles.density[i], particles.sound_speed[i]],
     );
     NormalisedRecord {
         stress: Mirrors::reflect_tensor(&own.stress, code),
         shift: Mirrors::reflect_vector(&own.shift, code),
+        ..own
     }
 }

@@ -2,9 +2,7 @@
 //! other, the nearer the more.
 
 use super::TermRecord;
-use crate::domain::Mirrors;
 use crate::numerics::lanes::{LANES, Lanes};
-use crate::particles::{Image, ParticleStore};
 use crate::sph::neighbourhood::gather_all;
 use crate::sph::principal::tensile_part;
 
@@ -18,14 +16,6 @@ pub fn repulsion(epsilon: f64, pressure: f64, deviatoric: &[f64; 6], density: f6
     let stress = [xx - pressure, yy - pressure, zz - pressure, xy, xz, yz];
     let scale = -epsilon / (density * density);
     tensile_part(&stress).map(|x| scale * x)
-}
-
-/// What an image shows with the factor ε.
-pub(super) fn shown(particles: &ParticleStore, image: Image, epsilon: f64) -> [f64; 6] {
-    let (i, code) = (image.base(), image.code());
-    let stress = &particles.deviatoric_stress[i];
-    let own = repulsion(epsilon, particles.pressure[i], stress, particles.density[i]);
-    Mirrors::reflect_symmetric(&own, code)
 }
 
 /// The part of eight receivers.

@@ -1,10 +1,7 @@
 //! The switch of Balsara (1995), which takes artificial viscosity out of shear.
 
-use rayon::prelude::*;
-
 use super::TermRecord;
 use crate::numerics::lanes::{LANES, Lanes};
-use crate::particles::{GRAIN, ParticleStore};
 use crate::sph::neighbourhood::gather;
 
 /// The Balsara switch `|∇·v|/(|∇·v| + |∇×v| + 10⁻⁴ c/h)` (Balsara 1995): one in compression, zero
@@ -18,17 +15,6 @@ pub fn limiter(l: &[f64; 9], sound_speed: f64, h: f64) -> f64 {
     let all = divergence + curl + 1e-4 * sound_speed / h;
     // A rigid body has neither strain nor sound.
     divergence / all.max(f64::MIN_POSITIVE)
-}
-
-/// The factors of owned particles, from the first sweep.
-pub(super) fn prepare(particles: &mut ParticleStore) {
-    let owned = particles.owned();
-    particles.viscosity_limiter[..owned]
-        .par_iter_mut()
-        .with_min_len(GRAIN)
-        .zip(&particles.velocity_gradient)
-        .zip((&particles.sound_speed, &particles.smoothing_length))
-        .for_each(|((factor, l), (&c, &h))| *factor = limiter(l, c, h));
 }
 
 /// The part of eight receivers: half of their factors.

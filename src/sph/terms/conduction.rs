@@ -1,21 +1,8 @@
 //! Artificial conduction between approaching particles (Noh 1987; Monaghan 1997).
 
-use rayon::prelude::*;
-
 use super::TermRecord;
 use crate::numerics::lanes::{LANES, Lanes};
-use crate::particles::{GRAIN, ParticleStore};
 use crate::sph::neighbourhood::gather;
-
-/// Specific energies of owned particles in the middle of a step `dt` (s).
-pub(super) fn prepare(particles: &mut ParticleStore, dt: f64) {
-    let owned = particles.owned();
-    particles.predicted_energy[..owned]
-        .par_iter_mut()
-        .with_min_len(GRAIN)
-        .zip((&particles.specific_energy, &particles.d_specific_energy_dt))
-        .for_each(|(predicted, (e, de))| *predicted = e + 0.5 * dt * de);
-}
 
 /// The part of eight receivers.
 pub(super) struct Lane<V> {

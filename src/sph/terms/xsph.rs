@@ -1,10 +1,6 @@
 //! XSPH (Monaghan 1989): particles drift with the mean velocity of their neighbours.
 
-use rayon::prelude::*;
-
-use crate::loads::Loads;
 use crate::numerics::lanes::Lanes;
-use crate::particles::{GRAIN, ParticleStore};
 
 /// The sums of eight receivers.
 pub(super) struct Lane<V> {
@@ -41,30 +37,4 @@ impl<V: Lanes> Lane<V> {
             z.mul_add(self.factor, zero),
         ]
     }
-}
-
-/// The rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that of the
-/// last sums, taken with the velocities predicted for the beginning of this step.
-///
-/// Particles that feel contact move with their own velocity: the energy of contact is a
-/// function of their positions, and its balance holds only where force times velocity is work.
-/// So do particles that a load drives, along the axes that it prescribes.
-pub(super) fn drift(particles: &mut ParticleStore, loads: &Loads, dt: f64) {
-    let (contact, bits) = (&particles.contact_acceleration, &particles.load);
-    (&mut particles.position, &particles.velocity_correction)
-        .into_par_iter()
-        .with_min_len(GRAIN)
-        .enumerate()
-        .for_each(|(i, (x, correction))| {
-            if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
-                return;
-            }
-            let mut drift = *correction;
-            if let Some(&bits) = bits.get(i) {
-                loads.clear_prescribed(bits, &mut drift);
-            }
-            for a in 0..3 {
-                x[a] += dt * drift[a];
-            }
-        });
 }

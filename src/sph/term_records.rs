@@ -1,0 +1,172 @@
+//! The pair terms of a case over the particles of a rank: what particles show for them, and what else they do.
+
+use rayon::prelude::*;
+
+use super::step::Side;
+use super::terms::artificial_stress::repulsion;
+use super::terms::balsara::limiter;
+use super::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, TermRecord, XSPH};
+use crate::domain::Mirrors;
+use crate::loads::Loads;
+use crate::model::{Case, SphOptions};
+use crate::neighbours::Lists;
+use crate::numerics::kernel::Kernel;
+use crate::particles::{GRAIN, Image, ParticleStore, resize};
+
+/// The pair terms of a case, and what particles and images show for them.
+pub(super) struct Terms {
+    set: u8,
+    records: Vec<TermRecord>,
+    inverse_shape: f64,
+    sph: SphOptions,
+}
+
+/// The set of pair terms of a case.
+fn set_of(sph: &SphOptions) -> u8 {
+    let wanted = [
+        (ARTIFICIAL_STRESS, sph.artificial_stress > 0.0),
+        (BALSARA, sph.balsara),
+        (CONDUCTION, sph.conduction > 0.0),
+        (XSPH, sph.xsph > 0.0),
+    ];
+    let wanted = wanted.into_iter().filter(|(_, wanted)| *wanted);
+    wanted.fold(0, |set, (term, _)| set | term)
+}
+
+/// Bytes of what each particle and image shows for the pair terms of a case.
+pub(super) fn bytes_of_records(sph: &SphOptions) -> usize {
+    if set_of(sph) == 0 {
+        0
+    } else {
+        size_of::<TermRecord>()
+    }
+}
+
+impl Terms {
+    pub fn new(case: &Case, kernel: &Kernel) -> Self {
+        // All bodies of a case have the same h/Δp.
+        let body = case.bodies.first();
+        let ratio = body.map_or(1.0, |b| b.lattice.spacing / b.smoothing_length);
+        Self {
+            set: set_of(&case.sph),
+            records: Vec::new(),
+            inverse_shape: kernel.normalisation() / kernel.value(ratio, 1.0),
+            sph: case.sph,
+        }
+    }
+
+    /// What the sums need.
+    pub fn of_sums(&self) -> PairTerms<'_> {
+        PairTerms {
+            set: self.set,
+            records: &self.records,
+            inverse_shape: self.inverse_shape,
+            conduction: self.sph.conduction,
+            xsph: self.sph.xsph,
+        }
+    }
+
+    pub fn memory(&self) -> usize {
+        self.records.capacity() * size_of::<TermRecord>()
+    }
+
+    /// What this rank's particles show to others, after the first sweep of a step `dt` (s).
+    pub fn prepare(&self, particles: &mut ParticleStore, dt: f64) {
+        if self.set & BALSARA != 0 {
+            limit_viscosity(particles);
+        }
+        if self.set & CONDUCTION != 0 {
+            predict_energies(particles, dt);
+        }
+    }
+
+    /// Records of halo particles and their images, or of this rank's particles and theirs.
+    pub fn show(&mut self, particles: &ParticleStore, lists: &Lists, side: Side) {
+        let set = self.set;
+        if set == 0 {
+            return;
+        }
+        let images = lists.images();
+        let epsilon = self.sph.artificial_stress;
+        resize(&mut self.records, images.len());
+        let records = self.records.par_iter_mut().zip(images);
+        records.with_min_len(GRAIN).for_each(|(record, &image)| {
+            let i = image.base();
+            if !side.takes(i >= particles.owned()) {
+                return;
+            }
+            *record = TermRecord::NEUTRAL;
+            if set & ARTIFICIAL_STRESS != 0 {
+                record.repulsion = repulsion_shown(particles, image, epsilon);
+            }
+            if set & BALSARA != 0 {
+                record.half_limiter = 0.5 * particles.viscosity_limiter[i];
+            }
+            if set & CONDUCTION != 0 {
+                record.specific_energy = particles.predicted_energy[i];
+            }
+        });
+    }
+
+    /// The rest of the drift of a step `dt` (s).
+    pub fn drift(&self, particles: &mut ParticleStore, loads: &Loads, dt: f64) {
+        if self.set & XSPH != 0 {
+            drift_along(particles, loads, dt);
+        }
+    }
+}
+
+/// What an image shows for artificial stress with the factor ε.
+fn repulsion_shown(particles: &ParticleStore, image: Image, epsilon: f64) -> [f64; 6] {
+    let (i, code) = (image.base(), image.code());
+    let stress = &particles.deviatoric_stress[i];
+    let own = repulsion(epsilon, particles.pressure[i], stress, particles.density[i]);
+    Mirrors::reflect_symmetric(&own, code)
+}
+
+/// The factors of the Balsara switch of owned particles, from the first sweep.
+fn limit_viscosity(particles: &mut ParticleStore) {
+    let owned = particles.owned();
+    particles.viscosity_limiter[..owned]
+        .par_iter_mut()
+        .with_min_len(GRAIN)
+        .zip(&particles.velocity_gradient)
+        .zip((&particles.sound_speed, &particles.smoothing_length))
+        .for_each(|((factor, l), (&c, &h))| *factor = limiter(l, c, h));
+}
+
+/// Specific energies of owned particles in the middle of a step `dt` (s).
+fn predict_energies(particles: &mut ParticleStore, dt: f64) {
+    let owned = particles.owned();
+    particles.predicted_energy[..owned]
+        .par_iter_mut()
+        .with_min_len(GRAIN)
+        .zip((&particles.specific_energy, &particles.d_specific_energy_dt))
+        .for_each(|(predicted, (e, de))| *predicted = e + 0.5 * dt * de);
+}
+
+/// The rest of the drift of a step `dt` (s). The mean velocity of the neighbours is that of the
+/// last sums, taken with the velocities predicted for the beginning of this step.
+///
+/// Particles that feel contact move with their own velocity: the energy of contact is a
+/// function of their positions, and its balance holds only where force times velocity is work.
+/// So do particles that a load drives, along the axes that it prescribes.
+fn drift_along(particles: &mut ParticleStore, loads: &Loads, dt: f64) {
+    let (contact, bits) = (&particles.contact_acceleration, &particles.load);
+    (&mut particles.position, &particles.velocity_correction)
+        .into_par_iter()
+        .with_min_len(GRAIN)
+        .enumerate()
+        .for_each(|(i, (x, correction))| {
+            if contact.get(i).is_some_and(|force| *force != [0.0; 3]) {
+                return;
+            }
+            let mut drift = *correction;
+            if let Some(&bits) = bits.get(i) {
+                loads.clear_prescribed(bits, &mut drift);
+            }
+            for a in 0..3 {
+                x[a] += dt * drift[a];
+            }
+        });
+}
