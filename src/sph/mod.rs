@@ -6,7 +6,9 @@
 //! outside the support adds an exact zero.
 
 pub mod corrected;
+mod force_sweep;
 mod formulation;
+mod from_mirrors;
 pub mod gradient;
 pub mod hourglass;
 pub mod linear_fit;
@@ -17,6 +19,7 @@ pub mod neighbourhood;
 pub mod normalised;
 mod phase;
 pub mod principal;
+mod pull_sweep;
 mod recording;
 mod rest;
 mod scale;

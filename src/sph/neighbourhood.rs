@@ -19,6 +19,17 @@ pub struct Sources<'a, S> {
     pub scale: S,
 }
 
+impl<'a, S> Sources<'a, S> {
+    /// The same with another scale.
+    pub(super) fn with<T>(&self, scale: T) -> Sources<'a, T> {
+        Sources {
+            records: self.records,
+            lengths: self.lengths,
+            scale,
+        }
+    }
+}
+
 impl<'a, S: PairScale> Sources<'a, S> {
     /// Eight receivers, of which unused lanes repeat a valid one, with the neighbours of all of
     /// them together, in canonical order.

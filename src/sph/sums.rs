@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::from_mirrors::FromMirrors;
 use super::momentum::Viscosity;
 use super::neighbourhood::Sources;
 use super::rest::Resting;
 use super::scale::Scale;
 use super::step::Side;
 use super::term_records::Terms;
-use crate::domain::MirrorForce;
 use crate::material::{Material, NEGLIGIBLE};
 use crate::model::{Case, SmoothingLength};
 use crate::neighbours::Lists;
@@ -33,21 +33,6 @@ pub(super) struct Sums {
     pub from_mirrors: Vec<FromMirrors>,
     /// Particles of this rank whose gradient has no correction.
     pub uncorrected: i64,
-}
-
-/// What the images behind symmetry planes exert on the particles of a chunk.
-#[derive(Debug, Clone, Default)]
-pub(super) struct FromMirrors {
-    /// The images among the neighbours of one cluster.
-    pub(super) indices: Vec<u32>,
-    /// What they do to single particles.
-    pub(super) forces: Vec<MirrorForce>,
-}
-
-impl FromMirrors {
-    fn memory(&self) -> usize {
-        4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
-    }
 }
 
 impl Sums {

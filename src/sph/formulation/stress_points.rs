@@ -8,18 +8,15 @@ mod moments;
 use rayon::prelude::*;
 
 use super::Formulation;
-use crate::domain::{MirrorForce, Mirrors};
-use crate::neighbours::{CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
-use crate::numerics::dispatch::{Vectorised, instructions};
-use crate::numerics::kernel::PairScale;
-use crate::numerics::lanes::Lanes;
-use crate::particles::{GRAIN, Image, ParticleStore, Scatter, empty, resize};
-use crate::sph::neighbourhood::Sources;
-use crate::sph::scale::with_scale;
+use crate::domain::Mirrors;
+use crate::neighbours::{CHUNKS_AT_ONCE, Lists};
+use crate::particles::{GRAIN, ParticleStore, Scatter, empty, resize};
+use crate::sph::from_mirrors::FromMirrors;
+use crate::sph::pull_sweep::{PullSweep, PullTarget};
 use crate::sph::signal::{SignalSpeed, Signals};
 use crate::sph::step::{Side, Step};
-use crate::sph::stress_points::{self, Pull, Pulled, StressPointRecord};
-use crate::sph::sums::{FromMirrors, Sums, scratch_of, sources};
+use crate::sph::stress_points::{self, StressPointRecord};
+use crate::sph::sums::{Sums, scratch_of, sources};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]
@@ -48,39 +45,34 @@ impl Formulation for StressPoints {
         side: Side,
     ) {
         self.show(particles, lists, side);
-        let set = instructions();
-        let (chunks, images) = (lists.chunks(), lists.images());
-        let Sums {
-            scale,
-            from_mirrors,
-            ..
-        } = sums;
+        let chunks = lists.chunks();
+        let from_mirrors = &mut sums.from_mirrors;
         from_mirrors.resize_with(chunks.len(), FromMirrors::default);
-        let target = &PullTarget {
-            images,
-            mass: &particles.mass,
-            acceleration: Scatter::new(&mut particles.acceleration),
-            density: Scatter::new(&mut particles.density),
-            energy: Scatter::new(&mut particles.specific_energy),
-            power: Scatter::new(&mut particles.d_specific_energy_dt),
-            approach: Scatter::new(&mut particles.approach_speed),
-        };
-        let shown = PullSources {
+        let all = &PullSweep {
+            motion: sources(lists, sums.scale),
             points: &self.records,
-            images,
+            images: lists.images(),
+            body_groups: lists.groups.of_bodies,
+            side,
+            target: PullTarget {
+                mass: &particles.mass,
+                acceleration: Scatter::new(&mut particles.acceleration),
+                density: Scatter::new(&mut particles.density),
+                energy: Scatter::new(&mut particles.specific_energy),
+                power: Scatter::new(&mut particles.d_specific_energy_dt),
+                approach: Scatter::new(&mut particles.approach_speed),
+            },
         };
-        let body_groups = lists.groups.of_bodies;
-        with_scale!(*scale, scale => chunks
-        .par_iter()
-        .zip(from_mirrors)
-        .with_max_len(CHUNKS_AT_ONCE)
-        .for_each(|(chunk, from_mirrors)| {
-            if side == Side::Inner {
-                empty(&mut from_mirrors.forces);
-            }
-            let (motion, sources) = (sources(lists, scale), shown);
-            set.run(PullChunk { chunk, side, body_groups, motion, sources, target, from_mirrors });
-        }));
+        chunks
+            .par_iter()
+            .zip(from_mirrors)
+            .with_max_len(CHUNKS_AT_ONCE)
+            .for_each(|(chunk, from_mirrors)| {
+                if side == Side::Inner {
+                    empty(&mut from_mirrors.forces);
+                }
+                all.sweep(chunk, from_mirrors);
+            });
     }
 
     /// The rest of the drift of stress points in a step `dt` (s), which have moved by their
@@ -143,112 +135,5 @@ impl StressPoints {
                 };
             }
         });
-    }
-}
-
-/// What the second sweep reads.
-#[derive(Clone, Copy)]
-struct PullSources<'a> {
-    points: &'a [StressPointRecord],
-    images: &'a [Image],
-}
-
-/// Where it writes.
-struct PullTarget<'a> {
-    images: &'a [Image],
-    mass: &'a [f64],
-    acceleration: Scatter<'a, [f64; 3]>,
-    density: Scatter<'a, f64>,
-    energy: Scatter<'a, f64>,
-    power: Scatter<'a, f64>,
-    approach: Scatter<'a, f64>,
-}
-
-impl PullTarget<'_> {
-    #[inline(always)]
-    fn store(&self, cluster: &Cluster, pulled: &Pulled) {
-        for k in 0..cluster.lanes {
-            let i = self.images[cluster.receivers[k] as usize].base();
-            let per_mass = 1.0 / self.mass[i];
-            let f = |a: usize| per_mass * pulled.force[a].0[k];
-            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            unsafe {
-                *self.acceleration.slot(i) = [f(0), f(1), f(2)];
-                *self.energy.slot(i) -= per_mass * pulled.heat.0[k];
-                *self.power.slot(i) = 0.0;
-                *self.approach.slot(i) = 0.0;
-                if pulled.density.0[k] > 0.0 {
-                    *self.density.slot(i) = pulled.density.0[k];
-                }
-            }
-        }
-    }
-}
-
-/// The second sweep over one task's clusters.
-struct PullChunk<'a, S> {
-    chunk: &'a Chunk,
-    side: Side,
-    body_groups: usize,
-    motion: Sources<'a, S>,
-    sources: PullSources<'a>,
-    target: &'a PullTarget<'a>,
-    from_mirrors: &'a mut FromMirrors,
-}
-
-impl<S: PairScale> Vectorised for PullChunk<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: Lanes>(self) {
-        let FromMirrors { indices, forces } = self.from_mirrors;
-        for (cluster, neighbours, among) in self.chunk.iter() {
-            if !self.side.takes(among.halo) || cluster.group >= self.body_groups {
-                continue;
-            }
-            let pulled = Self::sum::<V>(self.motion, &self.sources, cluster, neighbours);
-            self.target.store(cluster, &pulled);
-            if !among.mirrors {
-                continue;
-            }
-            // Stress points on this side pull at images too. What all do to the particles on this
-            // side adds up to twice the part of those behind a plane along its normal, and to none
-            // along the plane.
-            for axis in 0..3 {
-                let behind = |&j: &u32| self.sources.images[j as usize].code() >> axis & 1 == 1;
-                indices.clear();
-                indices.extend(neighbours.iter().copied().filter(behind));
-                if indices.is_empty() {
-                    continue;
-                }
-                let part = Self::sum::<V>(self.motion, &self.sources, cluster, indices).force[axis];
-                for k in 0..cluster.lanes {
-                    let mut force = [0.0; 3];
-                    force[axis] = 2.0 * part.0[k];
-                    let i = self.sources.images[cluster.receivers[k] as usize].base();
-                    forces.push(MirrorForce {
-                        particle: i,
-                        force,
-                        couple: [0.0; 3],
-                    });
-                }
-            }
-        }
-    }
-}
-
-impl<S: PairScale> PullChunk<'_, S> {
-    #[inline(always)]
-    fn sum<V: Lanes>(
-        motion: Sources<S>,
-        sources: &PullSources,
-        cluster: &Cluster,
-        neighbours: &[u32],
-    ) -> Pulled {
-        let sums = Pull {
-            around: motion.around(cluster.receivers, neighbours),
-            points: sources.points,
-        };
-        sums.run::<V>()
     }
 }

@@ -1,0 +1,185 @@
+//! The second sweep over the clusters of a task.
+
+use super::corrected::CorrectedRecord;
+use super::from_mirrors::FromMirrors;
+use super::momentum::{Forces, Momentum, PairStress, StressRecord, Viscosity};
+use super::neighbourhood::Sources;
+use super::normalised::{NormalisedRecord, stress_power};
+use super::scale::{Scale, with_scale};
+use super::step::Side;
+use super::terms::{PairTerms, with_terms};
+use crate::domain::MirrorForce;
+use crate::neighbours::{Chunk, Cluster};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::kernel::PairScale;
+use crate::numerics::lanes::Lanes;
+use crate::particles::{Image, Scatter};
+
+/// What the second sweep reads and writes.
+pub(super) struct ForceSweep<'a, R> {
+    pub motion: Sources<'a, Scale>,
+    pub images: &'a [Image],
+    /// Odd of those behind symmetry planes.
+    pub mirrored: &'a [u8],
+    /// What all particles and images show.
+    pub stresses: &'a [R],
+    pub viscosity: Viscosity,
+    pub terms: PairTerms<'a>,
+    /// Which clusters are swept.
+    pub side: Side,
+    pub target: ForceTarget<'a>,
+}
+
+/// Records that the second sweep is compiled for.
+pub(super) trait Swept: PairStress {
+    /// Sweeps the clusters of a task.
+    fn sweep(all: &ForceSweep<Self>, chunk: &Chunk, from_mirrors: &mut FromMirrors);
+}
+
+/// All of it is compiled here, whoever calls it.
+macro_rules! swept {
+    ($($record:ty),+) => {
+        $(
+            impl Swept for $record {
+                fn sweep(all: &ForceSweep<Self>, chunk: &Chunk, from_mirrors: &mut FromMirrors) {
+                    with_scale!(all.motion.scale, scale => with_terms!(all.terms.set, TERMS => {
+                        instructions().run(MomentumChunk::<_, Self, TERMS> {
+                            all,
+                            motion: all.motion.with(scale),
+                            chunk,
+                            from_mirrors,
+                        });
+                    }));
+                }
+            }
+        )+
+    };
+}
+swept!(StressRecord, CorrectedRecord, NormalisedRecord);
+
+/// Where the second sweep writes.
+pub(super) struct ForceTarget<'a> {
+    pub mass: &'a [f64],
+    pub acceleration: Scatter<'a, [f64; 3]>,
+    pub power: Scatter<'a, f64>,
+    pub approach: Scatter<'a, f64>,
+    pub correction: Option<Scatter<'a, [f64; 3]>>,
+    pub stress_power: StressPower<'a>,
+}
+
+impl ForceTarget<'_> {
+    #[inline(always)]
+    fn store<R: PairStress, const TERMS: bool>(
+        &self,
+        images: &[Image],
+        cluster: &Cluster,
+        forces: &Forces,
+    ) {
+        for k in 0..cluster.lanes {
+            let i = images[cluster.receivers[k] as usize].base();
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
+                *self.power.slot(i) = forces.power.0[k];
+                *self.approach.slot(i) = forces.approach.0[k];
+                if R::CORRECTED {
+                    *self.power.slot(i) += self.stress_power.of(i);
+                }
+                if TERMS && let Some(correction) = &self.correction {
+                    *correction.slot(i) = std::array::from_fn(|a| forces.correction[a].0[k]);
+                }
+            }
+        }
+    }
+}
+
+/// What the power follows from that stresses put into heat: fields of all particles.
+pub(super) struct StressPower<'a> {
+    pub pressure: &'a [f64],
+    pub deviatoric_stress: &'a [[f64; 6]],
+    pub velocity_gradient: &'a [[f64; 9]],
+    pub predicted_density: &'a [f64],
+}
+
+impl StressPower<'_> {
+    /// Of owned particle `i` (W/kg).
+    #[inline(always)]
+    fn of(&self, i: usize) -> f64 {
+        stress_power(
+            self.pressure[i],
+            &self.deviatoric_stress[i],
+            &self.velocity_gradient[i],
+            self.predicted_density[i],
+        )
+    }
+}
+
+/// The second sweep over one task's clusters.
+struct MomentumChunk<'a, S, R, const TERMS: bool> {
+    all: &'a ForceSweep<'a, R>,
+    motion: Sources<'a, S>,
+    chunk: &'a Chunk,
+    from_mirrors: &'a mut FromMirrors,
+}
+
+impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChunk<'_, S, R, TERMS> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let ForceSweep {
+            images,
+            stresses,
+            side,
+            target,
+            ..
+        } = self.all;
+        let chunk = self.chunk.iter();
+        for (cluster, neighbours, among) in chunk.filter(|(_, _, among)| side.takes(among.halo)) {
+            let free = |&j: &u32| stresses[j as usize].is_free();
+            if among.resting || !among.moving && neighbours.iter().all(free) {
+                target.store::<R, TERMS>(images, cluster, &Forces::NONE);
+                continue;
+            }
+            let forces = Self::sum::<V>(self.motion, self.all, cluster, neighbours);
+            target.store::<R, TERMS>(images, cluster, &forces);
+            if !among.mirrors {
+                continue;
+            }
+            let FromMirrors { indices, forces } = &mut *self.from_mirrors;
+            let is_image = |&j: &u32| self.all.mirrored[j as usize] & 1 == 1;
+            indices.clear();
+            indices.extend(neighbours.iter().copied().filter(is_image));
+            let part = Self::sum::<V>(self.motion, self.all, cluster, indices).acceleration;
+            let around = self.motion.around(cluster.receivers, indices);
+            let couple = R::couple::<V, S>(&around, stresses);
+            for k in 0..cluster.lanes {
+                let i = images[cluster.receivers[k] as usize].base();
+                let mass = target.mass[i];
+                forces.push(MirrorForce {
+                    particle: i,
+                    force: [0, 1, 2].map(|a: usize| mass * part[a].0[k]),
+                    couple: [0, 1, 2].map(|a: usize| couple[a].0[k]),
+                });
+            }
+        }
+    }
+}
+
+impl<S: PairScale, R: PairStress, const TERMS: bool> MomentumChunk<'_, S, R, TERMS> {
+    #[inline(always)]
+    fn sum<V: Lanes>(
+        motion: Sources<S>,
+        all: &ForceSweep<R>,
+        cluster: &Cluster,
+        neighbours: &[u32],
+    ) -> Forces {
+        let sums = Momentum::<S, R, TERMS> {
+            around: motion.around(cluster.receivers, neighbours),
+            stresses: all.stresses,
+            viscosity: all.viscosity,
+            terms: all.terms,
+        };
+        sums.run::<V>()
+    }
+}

@@ -1,0 +1,19 @@
+//! What a sweep finds of the images behind symmetry planes.
+
+use crate::domain::MirrorForce;
+
+/// What the images behind symmetry planes exert on the particles of a chunk.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FromMirrors {
+    /// The images among the neighbours of one cluster.
+    pub indices: Vec<u32>,
+    /// What they do to single particles.
+    pub forces: Vec<MirrorForce>,
+}
+
+impl FromMirrors {
+    /// Bytes allocated.
+    pub fn memory(&self) -> usize {
+        4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
+    }
+}

@@ -1,0 +1,135 @@
+//! The second sweep of stress points over the clusters of a task.
+
+use super::from_mirrors::FromMirrors;
+use super::neighbourhood::Sources;
+use super::scale::{Scale, with_scale};
+use super::step::Side;
+use super::stress_points::{Pull, Pulled, StressPointRecord};
+use crate::domain::MirrorForce;
+use crate::neighbours::{Chunk, Cluster};
+use crate::numerics::dispatch::{Vectorised, instructions};
+use crate::numerics::kernel::PairScale;
+use crate::numerics::lanes::Lanes;
+use crate::particles::{Image, Scatter};
+
+/// What the second sweep reads and writes.
+pub(super) struct PullSweep<'a> {
+    pub motion: Sources<'a, Scale>,
+    /// What all particles and images show that are stress points.
+    pub points: &'a [StressPointRecord],
+    pub images: &'a [Image],
+    /// Groups below are of velocity particles.
+    pub body_groups: usize,
+    /// Which clusters are swept.
+    pub side: Side,
+    pub target: PullTarget<'a>,
+}
+
+impl PullSweep<'_> {
+    /// Sweeps the clusters of a task.
+    pub fn sweep(&self, chunk: &Chunk, from_mirrors: &mut FromMirrors) {
+        with_scale!(self.motion.scale, scale => instructions().run(PullChunk {
+            all: self,
+            motion: self.motion.with(scale),
+            chunk,
+            from_mirrors,
+        }));
+    }
+}
+
+/// Where it writes.
+pub(super) struct PullTarget<'a> {
+    pub mass: &'a [f64],
+    pub acceleration: Scatter<'a, [f64; 3]>,
+    pub density: Scatter<'a, f64>,
+    pub energy: Scatter<'a, f64>,
+    pub power: Scatter<'a, f64>,
+    pub approach: Scatter<'a, f64>,
+}
+
+impl PullTarget<'_> {
+    #[inline(always)]
+    fn store(&self, images: &[Image], cluster: &Cluster, pulled: &Pulled) {
+        for k in 0..cluster.lanes {
+            let i = images[cluster.receivers[k] as usize].base();
+            let per_mass = 1.0 / self.mass[i];
+            let f = |a: usize| per_mass * pulled.force[a].0[k];
+            // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
+            unsafe {
+                *self.acceleration.slot(i) = [f(0), f(1), f(2)];
+                *self.energy.slot(i) -= per_mass * pulled.heat.0[k];
+                *self.power.slot(i) = 0.0;
+                *self.approach.slot(i) = 0.0;
+                if pulled.density.0[k] > 0.0 {
+                    *self.density.slot(i) = pulled.density.0[k];
+                }
+            }
+        }
+    }
+}
+
+/// The second sweep over one task's clusters.
+struct PullChunk<'a, S> {
+    all: &'a PullSweep<'a>,
+    motion: Sources<'a, S>,
+    chunk: &'a Chunk,
+    from_mirrors: &'a mut FromMirrors,
+}
+
+impl<S: PairScale> Vectorised for PullChunk<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) {
+        let all = self.all;
+        let FromMirrors { indices, forces } = self.from_mirrors;
+        for (cluster, neighbours, among) in self.chunk.iter() {
+            if !all.side.takes(among.halo) || cluster.group >= all.body_groups {
+                continue;
+            }
+            let pulled = Self::sum::<V>(self.motion, all.points, cluster, neighbours);
+            all.target.store(all.images, cluster, &pulled);
+            if !among.mirrors {
+                continue;
+            }
+            // Stress points on this side pull at images too. What all do to the particles on this
+            // side adds up to twice the part of those behind a plane along its normal, and to none
+            // along the plane.
+            for axis in 0..3 {
+                let behind = |&j: &u32| all.images[j as usize].code() >> axis & 1 == 1;
+                indices.clear();
+                indices.extend(neighbours.iter().copied().filter(behind));
+                if indices.is_empty() {
+                    continue;
+                }
+                let part = Self::sum::<V>(self.motion, all.points, cluster, indices).force[axis];
+                for k in 0..cluster.lanes {
+                    let mut force = [0.0; 3];
+                    force[axis] = 2.0 * part.0[k];
+                    let i = all.images[cluster.receivers[k] as usize].base();
+                    forces.push(MirrorForce {
+                        particle: i,
+                        force,
+                        couple: [0.0; 3],
+                    });
+                }
+            }
+        }
+    }
+}
+
+impl<S: PairScale> PullChunk<'_, S> {
+    #[inline(always)]
+    fn sum<V: Lanes>(
+        motion: Sources<S>,
+        points: &[StressPointRecord],
+        cluster: &Cluster,
+        neighbours: &[u32],
+    ) -> Pulled {
+        let sums = Pull {
+            around: motion.around(cluster.receivers, neighbours),
+            points,
+        };
+        sums.run::<V>()
+    }
+}
