@@ -12,7 +12,7 @@ use crate::domain::MirrorForce;
 use crate::neighbours::{Chunk, Cluster};
 use crate::numerics::dispatch::{Vectorised, instructions};
 use crate::numerics::kernel::PairScale;
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{F64x8, Lanes};
 use crate::particles::{Image, Scatter};
 
 /// What the second sweep reads and writes.
@@ -129,11 +129,18 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
     fn run<V: Lanes>(self) {
         let ForceSweep {
             images,
+            mirrored,
             stresses,
+            viscosity,
+            terms,
             side,
             target,
             ..
         } = self.all;
+        let FromMirrors {
+            indices,
+            forces: from_mirrors,
+        } = self.from_mirrors;
         let chunk = self.chunk.iter();
         for (cluster, neighbours, among) in chunk.filter(|(_, _, among)| side.takes(among.halo)) {
             let free = |&j: &u32| stresses[j as usize].is_free();
@@ -141,45 +148,61 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
                 target.store::<R, TERMS>(images, cluster, &Forces::NONE);
                 continue;
             }
-            let forces = Self::sum::<V>(self.motion, self.all, cluster, neighbours);
-            target.store::<R, TERMS>(images, cluster, &forces);
-            if !among.mirrors {
-                continue;
-            }
-            let FromMirrors { indices, forces } = &mut *self.from_mirrors;
-            let is_image = |&j: &u32| self.all.mirrored[j as usize] & 1 == 1;
-            indices.clear();
-            indices.extend(neighbours.iter().copied().filter(is_image));
-            let part = Self::sum::<V>(self.motion, self.all, cluster, indices).acceleration;
-            let around = self.motion.around(cluster.receivers, indices);
-            let couple = R::couple::<V, S>(&around, stresses);
-            for k in 0..cluster.lanes {
-                let i = images[cluster.receivers[k] as usize].base();
-                let mass = target.mass[i];
-                forces.push(MirrorForce {
-                    particle: i,
-                    force: [0, 1, 2].map(|a: usize| mass * part[a].0[k]),
-                    couple: [0, 1, 2].map(|a: usize| couple[a].0[k]),
-                });
+            // With all neighbours, and where there are images with these alone: in a loop, so that the sum is
+            // compiled once.
+            for alone in [false, true] {
+                let neighbours = if alone {
+                    let is_image = |&j: &u32| mirrored[j as usize] & 1 == 1;
+                    indices.clear();
+                    indices.extend(neighbours.iter().copied().filter(is_image));
+                    &*indices
+                } else {
+                    neighbours
+                };
+                let around = self.motion.around(cluster.receivers, neighbours);
+                let sums = Momentum::<S, R, TERMS> {
+                    around,
+                    stresses,
+                    viscosity: *viscosity,
+                    terms: *terms,
+                };
+                let forces = sums.run::<V>();
+                if alone {
+                    let couple = R::couple::<V, S>(&around, stresses);
+                    push_forces(
+                        from_mirrors,
+                        images,
+                        target.mass,
+                        cluster,
+                        (&forces, &couple),
+                    );
+                } else {
+                    target.store::<R, TERMS>(images, cluster, &forces);
+                }
+                if !among.mirrors {
+                    break;
+                }
             }
         }
     }
 }
 
-impl<S: PairScale, R: PairStress, const TERMS: bool> MomentumChunk<'_, S, R, TERMS> {
-    #[inline(always)]
-    fn sum<V: Lanes>(
-        motion: Sources<S>,
-        all: &ForceSweep<R>,
-        cluster: &Cluster,
-        neighbours: &[u32],
-    ) -> Forces {
-        let sums = Momentum::<S, R, TERMS> {
-            around: motion.around(cluster.receivers, neighbours),
-            stresses: all.stresses,
-            viscosity: all.viscosity,
-            terms: all.terms,
-        };
-        sums.run::<V>()
+/// Keeps what images do to the receivers of a cluster: forces and torques.
+#[inline(always)]
+fn push_forces(
+    from_mirrors: &mut Vec<MirrorForce>,
+    images: &[Image],
+    mass: &[f64],
+    cluster: &Cluster,
+    (forces, couple): (&Forces, &[F64x8; 3]),
+) {
+    for k in 0..cluster.lanes {
+        let i = images[cluster.receivers[k] as usize].base();
+        let force = |a: usize| mass[i] * forces.acceleration[a].0[k];
+        from_mirrors.push(MirrorForce {
+            particle: i,
+            force: [force(0), force(1), force(2)],
+            couple: [couple[0].0[k], couple[1].0[k], couple[2].0[k]],
+        });
     }
 }
