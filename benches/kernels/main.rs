@@ -9,11 +9,6 @@ use std::time::Duration;
 use criterion::measurement::WallTime;
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use engine::contact::{ContactTable, TaskForces, overlap};
-use engine::sph::corrected::{CorrectedGradient, CorrectedRecord};
-use engine::sph::gradient::VelocityGradient;
-use engine::sph::momentum::{Momentum, PairStress, StressRecord, Viscosity};
-use engine::sph::neighbourhood::{Neighbourhood, Sources};
-use engine::sph::terms::PairTerms;
 use material::{Material, PointBatch};
 use model::ContactClass;
 use numerics::dispatch::{Instructions, Vectorised, available};
@@ -22,6 +17,11 @@ use numerics::kernel::{ConstantScale, Kernel};
 use numerics::lanes::{LANES, Lanes};
 use particles::neighbours::ForeignLists;
 use scene::{COUNT, DENSITY, LENGTH, Scene, case, noise};
+use sums::corrected::{CorrectedGradient, CorrectedRecord};
+use sums::gradient::VelocityGradient;
+use sums::momentum::{Momentum, PairStress, StressRecord, Viscosity};
+use sums::neighbourhood::{Neighbourhood, Sources};
+use sums::terms::PairTerms;
 
 /// A group whose throughput counts so many elements.
 fn group<'a>(

@@ -50,6 +50,7 @@ fn misplaced_names(source: &Source) -> Vec<Found> {
         "HashMap" | "HashSet" if is_in(PHYSICS) => "has no order: use a BTreeMap",
         "Instant" | "SystemTime" if is_in(TIMELESS) => "is a clock",
         "rayon" if is_in("comm") => "brings threads to MPI",
+        "ParticleStore" if is_in("sums") => "is a store: sums take slices",
         "Simulation" if !drives => "is for `run` and the bench alone",
         _ => "",
     };

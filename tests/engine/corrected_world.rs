@@ -1,15 +1,15 @@
 //! Clouds to which the sweeps of corrected SPH are applied, and plain sums beside them.
 
-use engine::sph::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
-use engine::sph::momentum::{Forces, Momentum, Viscosity};
-use engine::sph::neighbourhood::Sources;
-use engine::sph::terms::PairTerms;
 use model::Vec3;
 use nalgebra::Matrix3;
 use numerics::dispatch::{Instructions, available};
 use numerics::kernel::{Kernel, PairScale};
 use particles::Mirrors;
 use particles::neighbours::Chunk;
+use sums::corrected::{Corrected, CorrectedGradient, CorrectedRecord};
+use sums::momentum::{Forces, Momentum, Viscosity};
+use sums::neighbourhood::Sources;
+use sums::terms::PairTerms;
 
 use crate::cloud::{Cloud, Found};
 use crate::common::random::Random;

@@ -13,12 +13,6 @@ use crate::common::virtual_ranks::on_each;
 use crate::common::{ball, body, case, make_elastic};
 use crate::linear_field::free_block;
 use comm::Comm;
-use engine::sph::momentum::{Forces, Momentum, Viscosity};
-use engine::sph::neighbourhood::Sources;
-use engine::sph::normalised::{
-    Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
-};
-use engine::sph::terms::PairTerms;
 use engine::step::Simulation;
 use model::{Axis, ContactDirection, ContactMode, Overlap, Potential, Shape, SphForm, Vec3};
 use nalgebra::Matrix3;
@@ -27,6 +21,12 @@ use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use numerics::lanes::LANES;
 use particles::Mirrors;
 use particles::neighbours::Chunk;
+use sums::momentum::{Forces, Momentum, Viscosity};
+use sums::neighbourhood::Sources;
+use sums::normalised::{
+    Corrected, Correction, LARGEST_CORRECTION, NormalisedGradient, NormalisedRecord, stress_power,
+};
+use sums::terms::PairTerms;
 
 /// A cloud with all that the sums read.
 struct World {

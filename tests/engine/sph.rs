@@ -8,15 +8,15 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
-use engine::sph::gradient::VelocityGradient;
-use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use engine::sph::neighbourhood::Sources;
-use engine::sph::terms::PairTerms;
 use numerics::dispatch::{Instructions, available};
 use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use numerics::lanes::{F64x8, LANES};
 use particles::neighbours::Chunk;
 use particles::neighbours::MotionRecord;
+use sums::gradient::VelocityGradient;
+use sums::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use sums::neighbourhood::Sources;
+use sums::terms::PairTerms;
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,

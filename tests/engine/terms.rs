@@ -3,19 +3,17 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
-use engine::sph::momentum::{Forces, Momentum, StressRecord, Viscosity};
-use engine::sph::neighbourhood::Sources;
-use engine::sph::terms::artificial_stress::repulsion;
-use engine::sph::terms::balsara::limiter;
-use engine::sph::terms::{
-    ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH,
-};
 use numerics::dispatch::{Instructions, available};
 use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use numerics::lanes::LANES;
 use particles::Mirrors;
 use particles::neighbours::Chunk;
 use particles::neighbours::MotionRecord;
+use sums::momentum::{Forces, Momentum, StressRecord, Viscosity};
+use sums::neighbourhood::Sources;
+use sums::terms::artificial_stress::repulsion;
+use sums::terms::balsara::limiter;
+use sums::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH};
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,

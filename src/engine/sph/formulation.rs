@@ -13,12 +13,12 @@ pub use corrected::Corrected;
 pub use normalised::Normalised;
 pub use stress_points::StressPoints;
 
+use super::shared::Sums;
 use super::signal::SignalSpeed;
-use super::step::{Side, Step};
-use super::sums::Sums;
 use crate::domain::Shown;
 use particles::ParticleStore;
 use particles::neighbours::Lists;
+use sums::step::{Side, Step};
 
 /// A formulation: how velocities strain matter, and how its stress moves it.
 pub(super) trait Formulation: SignalSpeed {

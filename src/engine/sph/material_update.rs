@@ -2,12 +2,12 @@
 
 use super::recording::Recording;
 use super::rest;
-use super::step::Step;
-use super::sums::Sums;
+use super::shared::Sums;
 use material::{LANES, Material, PointBatch, Rest};
 use numerics::lanes::{F64x8, Lanes};
 use particles::neighbours::{Cluster, Lists};
 use particles::{Image, MaterialPoints, Records};
+use sums::step::Step;
 
 /// Work for a particle apart from its neighbours, in neighbours of the pair sums: sort, list,
 /// material, integration and time-step candidates against both sweeps, as timed by the bench.

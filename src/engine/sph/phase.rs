@@ -2,15 +2,11 @@
 
 use rayon::prelude::*;
 
-use super::corrected::CorrectedRecord;
 use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
-use super::momentum::StressRecord;
-use super::normalised::NormalisedRecord;
 use super::rest::Resting;
+use super::shared::Sums;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
-use super::step::{Side, Step};
-use super::sums::Sums;
 use super::term_records;
 use crate::domain::Shown;
 use crate::loads::Loads;
@@ -19,6 +15,10 @@ use numerics::kernel::Kernel;
 use particles::MirrorForce;
 use particles::ParticleStore;
 use particles::neighbours::Lists;
+use sums::corrected::CorrectedRecord;
+use sums::momentum::StressRecord;
+use sums::normalised::NormalisedRecord;
+use sums::step::{Side, Step};
 
 /// The SPH sums of a case, with what they keep from step to step.
 pub struct Sph {

@@ -1,12 +1,12 @@
 //! What particles remember of a material update: plastic work, and the extremes so far.
 
-use super::step::Step;
-use super::sums::Sums;
+use super::shared::Sums;
 use material::{FAILED, LANES, Lanes as Numbers, Material, PointBatch};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::lane_matrix::dot;
 use numerics::lanes::Lanes;
 use particles::{Records, Scatter};
+use sums::step::Step;
 
 /// Books updates in the records of particles.
 pub(super) struct Recording<'a> {

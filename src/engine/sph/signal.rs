@@ -1,6 +1,6 @@
 //! Speeds of the fastest signals, for the time step.
 
-use super::momentum::Viscosity;
+use sums::momentum::Viscosity;
 
 /// What the signal speeds of owned particles follow from.
 #[derive(Debug, Clone, Copy)]

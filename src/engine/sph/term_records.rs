@@ -2,16 +2,16 @@
 
 use rayon::prelude::*;
 
-use super::step::Side;
-use super::terms::artificial_stress::repulsion;
-use super::terms::balsara::limiter;
-use super::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, TermRecord, XSPH};
 use crate::loads::Loads;
 use model::{Case, SphOptions};
 use numerics::kernel::Kernel;
 use particles::Mirrors;
 use particles::neighbours::Lists;
 use particles::{GRAIN, Image, ParticleStore, resize};
+use sums::step::Side;
+use sums::terms::artificial_stress::repulsion;
+use sums::terms::balsara::limiter;
+use sums::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, TermRecord, XSPH};
 
 /// The pair terms of a case, and what particles and images show for them.
 pub(super) struct Terms {

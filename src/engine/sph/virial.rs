@@ -1,7 +1,6 @@
 //! The virial of the forces by which stresses act between pairs of particles, for what snapshots
 //! show (theory page "Contact"). No step needs it, so it is no sweep in vectors.
 
-use crate::sph::corrected::CorrectedRecord;
 use crate::sph::phase::Sph;
 use model::{Case, SphForm};
 use numerics::kernel::Kernel;
@@ -10,6 +9,7 @@ use numerics::virial::Virial;
 use particles::Mirrors;
 use particles::ParticleStore;
 use particles::neighbours::Lists;
+use sums::corrected::CorrectedRecord;
 
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {

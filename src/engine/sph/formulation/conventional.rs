@@ -4,17 +4,17 @@ use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use super::stresses::{ShowStress, fill_stresses};
-use crate::sph::gradient::VelocityGradient;
-use crate::sph::momentum::StressRecord;
-use crate::sph::neighbourhood::Neighbourhood;
+use crate::sph::shared::{Sums, scratch_of};
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::step::{Side, Step};
-use crate::sph::sums::{Sums, scratch_of};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, LANES, Lanes};
 use particles::neighbours::{Among, Cluster, Lists};
 use particles::{ParticleStore, material_points, records_of};
+use sums::gradient::VelocityGradient;
+use sums::momentum::StressRecord;
+use sums::neighbourhood::Neighbourhood;
+use sums::step::{Side, Step};
 
 /// The conventional formulation.
 #[derive(Debug, Default)]

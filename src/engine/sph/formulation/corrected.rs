@@ -7,13 +7,9 @@ use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
 use crate::domain::Shown;
-use crate::sph::corrected::{CorrectedGradient, CorrectedRecord, Correction};
-use crate::sph::hourglass;
 use crate::sph::material_update::{Show, Updated};
-use crate::sph::neighbourhood::Neighbourhood;
+use crate::sph::shared::{Sums, scratch_of, show_images};
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::step::{Side, Step};
-use crate::sph::sums::{Sums, scratch_of, show_images};
 use material::{FAILED, NEGLIGIBLE, PointBatch};
 use model::Case;
 use numerics::dispatch::Vectorised;
@@ -23,6 +19,10 @@ use numerics::lanes::{F64x8, LANES, Lanes};
 use particles::Mirrors;
 use particles::neighbours::{Among, Cluster, Lists};
 use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
+use sums::corrected::{CorrectedGradient, CorrectedRecord, Correction};
+use sums::hourglass;
+use sums::neighbourhood::Neighbourhood;
+use sums::step::{Side, Step};
 
 /// The corrected formulation.
 #[derive(Debug, Default)]

@@ -4,15 +4,15 @@
 use rayon::prelude::*;
 
 use crate::sph::material_update::{MaterialUpdate, Show};
-use crate::sph::neighbourhood::{Neighbourhood, Sources};
-use crate::sph::scale::with_scale;
-use crate::sph::step::Step;
-use crate::sph::sums::{Sums, sources};
+use crate::sph::shared::{Sums, sources};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, Lanes};
 use particles::neighbours::{Among, CHUNKS_AT_ONCE, Chunk, Cluster, Lists};
 use particles::{MaterialPoints, Records};
+use sums::neighbourhood::{Neighbourhood, Sources};
+use sums::step::Step;
+use sums::with_scale;
 
 /// How a formulation makes velocity gradients.
 pub(super) trait Gradient: Sync {

@@ -3,12 +3,12 @@
 
 use rayon::prelude::*;
 
-use crate::sph::force_sweep::{ForceSweep, ForceTarget, StressPower, Swept};
-use crate::sph::from_mirrors::FromMirrors;
-use crate::sph::step::Side;
-use crate::sph::sums::{Sums, sources};
+use crate::sph::shared::{Sums, sources};
 use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::{ParticleStore, Scatter, empty};
+use sums::force_sweep::{ForceSweep, ForceTarget, StressPower, Swept};
+use sums::from_mirrors::FromMirrors;
+use sums::step::Side;
 
 /// The sweep over the clusters of a side, after stresses and pair terms have been shown.
 pub(super) fn accelerate<R: Swept>(

@@ -6,17 +6,17 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::sph::neighbourhood::Neighbourhood;
-use crate::sph::normalised::{NormalisedGradient, NormalisedRecord};
+use crate::sph::shared::{Sums, scratch_of};
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::step::{Side, Step};
-use crate::sph::sums::{Sums, scratch_of};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, Lanes};
 use particles::Mirrors;
 use particles::neighbours::{Among, Cluster, Lists};
 use particles::{GRAIN, Image, ParticleStore, Scatter, material_points, records_of, resize};
+use sums::neighbourhood::Neighbourhood;
+use sums::normalised::{NormalisedGradient, NormalisedRecord};
+use sums::step::{Side, Step};
 
 /// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
 const SURFACE_CORRECTION: f64 = 2.0;

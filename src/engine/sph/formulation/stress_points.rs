@@ -8,15 +8,15 @@ mod moments;
 use rayon::prelude::*;
 
 use super::Formulation;
-use crate::sph::from_mirrors::FromMirrors;
-use crate::sph::pull_sweep::{PullSweep, PullTarget};
+use crate::sph::shared::{Sums, scratch_of, sources};
 use crate::sph::signal::{SignalSpeed, Signals};
-use crate::sph::step::{Side, Step};
-use crate::sph::stress_points::{self, StressPointRecord};
-use crate::sph::sums::{Sums, scratch_of, sources};
 use particles::Mirrors;
 use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::{GRAIN, ParticleStore, Scatter, empty, resize};
+use sums::from_mirrors::FromMirrors;
+use sums::pull_sweep::{PullSweep, PullTarget};
+use sums::step::{Side, Step};
+use sums::stress_points::{self, StressPointRecord};
 
 /// The formulation by stress points.
 #[derive(Debug, Default)]

@@ -1,13 +1,13 @@
 //! Records of the stress of particles and images.
 
 use crate::sph::material_update::{Show, Updated};
-use crate::sph::momentum::StressRecord;
-use crate::sph::step::Side;
-use crate::sph::sums::show_images;
+use crate::sph::shared::show_images;
 use numerics::lanes::Lanes;
 use particles::Mirrors;
 use particles::neighbours::Lists;
 use particles::{ParticleStore, Scatter};
+use sums::momentum::StressRecord;
+use sums::step::Side;
 
 /// Shows stresses as they are updated.
 pub(super) struct ShowStress<'a>(Scatter<'a, StressRecord>);

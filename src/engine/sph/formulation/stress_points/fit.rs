@@ -4,19 +4,19 @@ use std::sync::atomic::{AtomicI64, Ordering};
 
 use rayon::prelude::*;
 
-use crate::sph::linear_fit::{Fit, Fitted, LinearFit};
 use crate::sph::material_update::MaterialUpdate;
-use crate::sph::mid_step::{MidStep, mid_step};
-use crate::sph::neighbourhood::Sources;
-use crate::sph::normalised::stress_power;
-use crate::sph::scale::with_scale;
-use crate::sph::step::Step;
-use crate::sph::sums::{Sums, sources};
+use crate::sph::shared::{Sums, sources};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, LANES, Lanes};
 use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists};
 use particles::{Image, ParticleStore, Scatter, material_points, records_of};
+use sums::linear_fit::{Fit, Fitted, LinearFit};
+use sums::mid_step::{MidStep, mid_step};
+use sums::neighbourhood::Sources;
+use sums::normalised::stress_power;
+use sums::step::Step;
+use sums::with_scale;
 
 /// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
 /// fits in index of the moments that follow from it.

@@ -3,10 +3,10 @@
 
 use rayon::prelude::*;
 
-use crate::sph::momentum::Viscosity;
-use crate::sph::normalised::stress_power;
-use crate::sph::stress_points::{moment, viscous_stress};
 use particles::{GRAIN, ParticleStore};
+use sums::momentum::Viscosity;
+use sums::normalised::stress_power;
+use sums::stress_points::{moment, viscous_stress};
 
 /// Moments of this rank's stress points from their stress, that of viscosity included, and their
 /// power.

@@ -21,7 +21,7 @@ pub struct Sources<'a, S> {
 
 impl<'a, S> Sources<'a, S> {
     /// The same with another scale.
-    pub(super) fn with<T>(&self, scale: T) -> Sources<'a, T> {
+    pub(crate) fn with<T>(&self, scale: T) -> Sources<'a, T> {
         Sources {
             records: self.records,
             lengths: self.lengths,
@@ -47,15 +47,15 @@ impl<'a, S: PairScale> Sources<'a, S> {
 /// The receivers of one cluster with their neighbours; sums go in the order of `neighbours`.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbourhood<'a, S> {
-    pub(super) sources: Sources<'a, S>,
-    pub(super) receivers: [u32; LANES],
-    pub(super) neighbours: &'a [u32],
+    pub(crate) sources: Sources<'a, S>,
+    pub(crate) receivers: [u32; LANES],
+    pub(crate) neighbours: &'a [u32],
 }
 
 impl<'a, S: PairScale> Neighbourhood<'a, S> {
     /// Position (m) and velocity (m/s) of the receivers.
     #[inline(always)]
-    pub(super) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
+    pub(crate) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
         let receivers = records(self.sources.records, &self.receivers);
         (
             gather_all(&receivers, |record, a| record.position[a]),
@@ -65,7 +65,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 
     /// Smoothing lengths of the receivers (m), whatever if the scale is constant.
     #[inline(always)]
-    pub(super) fn h<V: Lanes>(&self) -> V {
+    pub(crate) fn h<V: Lanes>(&self) -> V {
         let at = |k: usize| length::<S>(self.sources.lengths, self.receivers[k] as usize);
         V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
     }
@@ -73,13 +73,13 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     /// The receivers, which stand at `position` (m), with one neighbour after the other. A particle
     /// whose position is NaN has none, not even itself.
     #[inline(always)]
-    pub(super) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S, ()> {
+    pub(crate) fn pairs<V: Lanes>(&self, position: &[V; 3]) -> Pairs<'a, V, S, ()> {
         self.pairs_beside(position, ())
     }
 
     /// The same, with the inverse of a divisor.
     #[inline(always)]
-    pub(super) fn pairs_beside<V: Lanes, D: Divisor<V>>(
+    pub(crate) fn pairs_beside<V: Lanes, D: Divisor<V>>(
         &self,
         position: &[V; 3],
         divisor: D,
@@ -104,7 +104,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 }
 
 /// What a sum over pairs divides by beside their distances.
-pub(super) trait Divisor<V>: Copy {
+pub(crate) trait Divisor<V>: Copy {
     /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
     fn of(&self, index: usize, square: V, h: V) -> Option<V>;
 }
@@ -117,24 +117,24 @@ impl<V> Divisor<V> for () {
 }
 
 /// Eight receivers and one neighbour.
-pub(super) struct Pair<'a, V> {
+pub(crate) struct Pair<'a, V> {
     /// Index of the neighbour among all sources.
-    pub(super) index: usize,
+    pub(crate) index: usize,
     /// The neighbour.
-    pub(super) source: &'a MotionRecord,
+    pub(crate) source: &'a MotionRecord,
     /// How they stand.
-    pub(super) separation: Separation<V>,
+    pub(crate) separation: Separation<V>,
     /// The kernel.
-    pub(super) kernel: PairKernel<V>,
+    pub(crate) kernel: PairKernel<V>,
     /// `h_ij` (m).
-    pub(super) h: V,
+    pub(crate) h: V,
     /// The inverse of the divisor, 1 without one.
-    pub(super) beside: V,
+    pub(crate) beside: V,
 }
 
 /// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
 /// both take long, and processors look no farther than some sixty operations that wait.
-pub(super) struct Pairs<'a, V, S, D> {
+pub(crate) struct Pairs<'a, V, S, D> {
     around: Neighbourhood<'a, S>,
     position: [V; 3],
     h: V,
@@ -211,21 +211,21 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
 /// The records of eight receivers. (Written out, since what array methods call may be compiled
 /// apart from the vector code.)
 #[inline(always)]
-pub(super) fn records<'a, R>(sources: &'a [R], indices: &[u32; LANES]) -> [&'a R; LANES] {
+pub(crate) fn records<'a, R>(sources: &'a [R], indices: &[u32; LANES]) -> [&'a R; LANES] {
     let at = |k: usize| &sources[indices[k] as usize];
     [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
 }
 
 /// One number of each of eight records.
 #[inline(always)]
-pub(super) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> f64) -> V {
+pub(crate) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> f64) -> V {
     let at = |k: usize| number(records[k]);
     V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
 }
 
 /// `N` numbers of each of eight records.
 #[inline(always)]
-pub(super) fn gather_all<V: Lanes, R, const N: usize>(
+pub(crate) fn gather_all<V: Lanes, R, const N: usize>(
     records: &[&R; LANES],
     number: impl Fn(&R, usize) -> f64,
 ) -> [V; N] {
@@ -244,15 +244,15 @@ fn length<S: PairScale>(lengths: &[f64], index: usize) -> f64 {
 
 /// Where eight receivers stand seen from one neighbour, with the distances.
 #[derive(Clone, Copy)]
-pub(super) struct Separation<V> {
+pub(crate) struct Separation<V> {
     /// `x_i − x_j` (m).
-    pub(super) r: [V; 3],
+    pub(crate) r: [V; 3],
     /// Its square (m²), not below [`SMALLEST_SQUARE`].
-    pub(super) square: V,
+    pub(crate) square: V,
     /// `r` (m).
-    pub(super) distance: V,
+    pub(crate) distance: V,
     /// `1/r` (1/m).
-    pub(super) inverse: V,
+    pub(crate) inverse: V,
 }
 
 /// How far eight receivers stand from one neighbour.

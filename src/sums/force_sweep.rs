@@ -5,9 +5,10 @@ use super::from_mirrors::FromMirrors;
 use super::momentum::{Forces, Momentum, PairStress, StressRecord, Viscosity};
 use super::neighbourhood::Sources;
 use super::normalised::{NormalisedRecord, stress_power};
-use super::scale::{Scale, with_scale};
+use super::scale::Scale;
 use super::step::Side;
 use super::terms::{PairTerms, with_terms};
+use crate::with_scale;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::{F64x8, Lanes};
@@ -16,22 +17,27 @@ use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
 /// What the second sweep reads and writes.
-pub(super) struct ForceSweep<'a, R> {
+pub struct ForceSweep<'a, R> {
+    /// Places, velocities and volumes of all particles and images.
     pub motion: Sources<'a, Scale>,
+    /// All particles and images, in the order of the lists.
     pub images: &'a [Image],
     /// Odd of those behind symmetry planes.
     pub mirrored: &'a [u8],
     /// What all particles and images show.
     pub stresses: &'a [R],
+    /// Coefficients of the artificial viscosity.
     pub viscosity: Viscosity,
+    /// The pair terms of the case.
     pub terms: PairTerms<'a>,
     /// Which clusters are swept.
     pub side: Side,
+    /// Where it writes.
     pub target: ForceTarget<'a>,
 }
 
 /// Records that the second sweep is compiled for.
-pub(super) trait Swept: PairStress {
+pub trait Swept: PairStress {
     /// Sweeps the clusters of a task.
     fn sweep(all: &ForceSweep<Self>, chunk: &Chunk, from_mirrors: &mut FromMirrors);
 }
@@ -58,12 +64,18 @@ macro_rules! swept {
 swept!(StressRecord, CorrectedRecord, NormalisedRecord);
 
 /// Where the second sweep writes.
-pub(super) struct ForceTarget<'a> {
+pub struct ForceTarget<'a> {
+    /// Mass (kg).
     pub mass: &'a [f64],
+    /// Acceleration (m/s²).
     pub acceleration: Scatter<'a, [f64; 3]>,
+    /// Rate of the specific energy (W/kg).
     pub power: Scatter<'a, f64>,
+    /// The largest speed of approach (m/s).
     pub approach: Scatter<'a, f64>,
+    /// Correction of the drift by XSPH (m/s), if the case has it.
     pub correction: Option<Scatter<'a, [f64; 3]>>,
+    /// What the power of corrected stresses follows from.
     pub stress_power: StressPower<'a>,
 }
 
@@ -94,10 +106,14 @@ impl ForceTarget<'_> {
 }
 
 /// What the power follows from that stresses put into heat: fields of all particles.
-pub(super) struct StressPower<'a> {
+pub struct StressPower<'a> {
+    /// Pressure (Pa).
     pub pressure: &'a [f64],
+    /// Deviatoric stress xx, yy, zz, xy, xz, yz (Pa).
     pub deviatoric_stress: &'a [[f64; 6]],
+    /// Velocity gradient, row by row (1/s).
     pub velocity_gradient: &'a [[f64; 9]],
+    /// Predicted density (kg/m³).
     pub predicted_density: &'a [f64],
 }
 

@@ -1,7 +1,7 @@
 //! Artificial conduction between approaching particles (Noh 1987; Monaghan 1997).
 
 use super::TermRecord;
-use crate::sph::neighbourhood::gather;
+use crate::neighbourhood::gather;
 use numerics::lanes::{LANES, Lanes};
 
 /// The part of eight receivers.

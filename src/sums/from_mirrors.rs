@@ -4,7 +4,7 @@ use particles::MirrorForce;
 
 /// What the images behind symmetry planes exert on the particles of a chunk.
 #[derive(Debug, Clone, Default)]
-pub(super) struct FromMirrors {
+pub struct FromMirrors {
     /// The images among the neighbours of one cluster.
     pub indices: Vec<u32>,
     /// What they do to single particles.

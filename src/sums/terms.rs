@@ -89,7 +89,7 @@ impl PairTerms<'_> {
 
     /// What the particle or image at an index shows, if there are terms.
     #[inline(always)]
-    pub(super) fn record<const TERMS: bool>(&self, index: usize) -> &TermRecord {
+    pub(crate) fn record<const TERMS: bool>(&self, index: usize) -> &TermRecord {
         if TERMS {
             &self.records[index]
         } else {
@@ -99,7 +99,7 @@ impl PairTerms<'_> {
 }
 
 /// The terms of eight receivers, of which those that are not of the set do nothing.
-pub(super) struct TermSums<V, const TERMS: bool> {
+pub(crate) struct TermSums<V, const TERMS: bool> {
     set: u8,
     artificial_stress: artificial_stress::Lane<V>,
     balsara: balsara::Lane<V>,

@@ -79,7 +79,7 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
 }
 
 /// Artificial viscosity of eight receivers.
-pub(super) struct Viscous<V> {
+pub(crate) struct Viscous<V> {
     /// Density of the receivers (kg/m³).
     pub rho: V,
     /// `α c_i` (m/s).
@@ -90,7 +90,7 @@ pub(super) struct Viscous<V> {
 }
 
 /// Artificial viscosity of pairs.
-pub(super) struct ViscousPair<V> {
+pub(crate) struct ViscousPair<V> {
     /// `v·r` (m²/s).
     pub closing: V,
     /// `μ` (m/s).
@@ -111,7 +111,7 @@ fn soft<V: Lanes>(square: V, h: V) -> V {
 
 /// `(r² + 0.01 h²) (ρ_i + ρ_j)`, whose inverse serves those of both.
 #[derive(Clone, Copy)]
-pub(super) struct SoftSquare<'a, V, R> {
+pub(crate) struct SoftSquare<'a, V, R> {
     /// Density of the receivers (kg/m³).
     pub rho: V,
     /// Stresses of all particles and images.
@@ -231,7 +231,7 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for Momentum<'_,
 }
 
 /// The stress of eight receivers, with that of one neighbour after the other.
-pub(super) trait OwnStress<V: Lanes>: Sized {
+pub(crate) trait OwnStress<V: Lanes>: Sized {
     /// What particles show.
     type Record: PairStress;
     /// Whether it needs the kernel's value.
@@ -254,7 +254,7 @@ pub(super) trait OwnStress<V: Lanes>: Sized {
 
 /// The sums over pairs of such receivers.
 #[inline(always)]
-pub(super) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
+pub(crate) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
     sums: &Momentum<S, O::Record, TERMS>,
 ) -> Forces {
     let around = &sums.around;

@@ -1,7 +1,7 @@
 //! The switch of Balsara (1995), which takes artificial viscosity out of shear.
 
 use super::TermRecord;
-use crate::sph::neighbourhood::gather;
+use crate::neighbourhood::gather;
 use numerics::lanes::{LANES, Lanes};
 
 /// The Balsara switch `|∇·v|/(|∇·v| + |∇×v| + 10⁻⁴ c/h)` (Balsara 1995): one in compression, zero

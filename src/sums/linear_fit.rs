@@ -23,12 +23,12 @@ const STEEP: f64 = 12.0;
 /// across it vanish.
 const REGULAR: f64 = 0.05;
 /// The norm over `h √(Σ |G|²)`.
-pub(super) const NORM: f64 = 0.8;
+pub(crate) const NORM: f64 = 0.8;
 
 /// The weight `(W h^d/σ_d)⁴`: sharp, so that the next particles decide and alternating velocities
 /// are seen, yet as far as the kernel, so that no stretch of the body leaves a point without them.
 #[inline(always)]
-pub(super) fn weight<V: Lanes, S: PairScale>(scale: &S, kernel: &PairKernel<V>) -> V {
+pub(crate) fn weight<V: Lanes, S: PairScale>(scale: &S, kernel: &PairKernel<V>) -> V {
     let shape = scale.shape(kernel);
     let square = shape.mul(shape);
     square.mul(square)

@@ -5,10 +5,12 @@ use numerics::kernel::{ConstantScale, Kernel, MeanScale};
 
 /// The pair scale of a case, chosen once.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Scale {
+pub enum Scale {
+    /// One smoothing length for all.
     Constant(ConstantScale),
+    /// Mean lengths of pairs, in three dimensions.
     Three(MeanScale<Three>),
-    /// Of fewer dimensions.
+    /// Mean lengths of pairs, in fewer dimensions.
     Any(MeanScale<Any>),
 }
 
@@ -24,13 +26,13 @@ impl Scale {
 }
 
 /// Calls `$work` with the scale of a case as a concrete type.
+#[macro_export]
 macro_rules! with_scale {
     ($scale:expr, $name:ident => $work:expr) => {
         match $scale {
-            $crate::sph::scale::Scale::Constant($name) => $work,
-            $crate::sph::scale::Scale::Three($name) => $work,
-            $crate::sph::scale::Scale::Any($name) => $work,
+            $crate::scale::Scale::Constant($name) => $work,
+            $crate::scale::Scale::Three($name) => $work,
+            $crate::scale::Scale::Any($name) => $work,
         }
     };
 }
-pub(super) use with_scale;

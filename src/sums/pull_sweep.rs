@@ -2,9 +2,10 @@
 
 use super::from_mirrors::FromMirrors;
 use super::neighbourhood::Sources;
-use super::scale::{Scale, with_scale};
+use super::scale::Scale;
 use super::step::Side;
 use super::stress_points::{Pull, Pulled, StressPointRecord};
+use crate::with_scale;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
 use numerics::lanes::Lanes;
@@ -13,15 +14,18 @@ use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
 /// What the second sweep reads and writes.
-pub(super) struct PullSweep<'a> {
+pub struct PullSweep<'a> {
+    /// Places, velocities and volumes of all particles and images.
     pub motion: Sources<'a, Scale>,
     /// What all particles and images show that are stress points.
     pub points: &'a [StressPointRecord],
+    /// All particles and images, in the order of the lists.
     pub images: &'a [Image],
     /// Groups below are of velocity particles.
     pub body_groups: usize,
     /// Which clusters are swept.
     pub side: Side,
+    /// Where it writes.
     pub target: PullTarget<'a>,
 }
 
@@ -38,12 +42,18 @@ impl PullSweep<'_> {
 }
 
 /// Where it writes.
-pub(super) struct PullTarget<'a> {
+pub struct PullTarget<'a> {
+    /// Mass (kg).
     pub mass: &'a [f64],
+    /// Acceleration (m/s²).
     pub acceleration: Scatter<'a, [f64; 3]>,
+    /// Rate of the density (kg/(m³ s)).
     pub density: Scatter<'a, f64>,
+    /// Rate of the specific energy (W/kg).
     pub energy: Scatter<'a, f64>,
+    /// Power of the stresses (W/kg).
     pub power: Scatter<'a, f64>,
+    /// The largest speed of approach (m/s).
     pub approach: Scatter<'a, f64>,
 }
 

@@ -2,8 +2,8 @@
 //! other, the nearer the more.
 
 use super::TermRecord;
-use crate::sph::neighbourhood::gather_all;
-use crate::sph::principal::tensile_part;
+use crate::neighbourhood::gather_all;
+use crate::principal::tensile_part;
 use numerics::lanes::{LANES, Lanes};
 
 /// Artificial stress over density squared (Pa m⁶/kg²), `R = −ε Σ_a ⟨σ_a⟩₊ n_a ⊗ n_a/ρ²` over the

@@ -2,12 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::from_mirrors::FromMirrors;
-use super::momentum::Viscosity;
-use super::neighbourhood::Sources;
 use super::rest::Resting;
-use super::scale::Scale;
-use super::step::Side;
 use super::term_records::Terms;
 use material::{Material, NEGLIGIBLE};
 use model::{Case, SmoothingLength};
@@ -15,6 +10,11 @@ use numerics::kernel::Kernel;
 use numerics::lanes::LANES;
 use particles::neighbours::Lists;
 use particles::{GRAIN, Scatter, resize};
+use sums::from_mirrors::FromMirrors;
+use sums::momentum::Viscosity;
+use sums::neighbourhood::Sources;
+use sums::scale::Scale;
+use sums::step::Side;
 
 /// What a formulation finds beside particles and lists, kept from step to step.
 pub(super) struct Sums {

@@ -1,7 +1,7 @@
 //! The second sweep: what particles show of their stress, and its forces.
 
-use crate::sph::momentum::{Forces, Momentum, OwnStress, PairStress, sum};
-use crate::sph::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
+use crate::momentum::{Forces, Momentum, OwnStress, PairStress, sum};
+use crate::neighbourhood::{Neighbourhood, Separation, gather, gather_all, records};
 use numerics::kernel::PairScale;
 use numerics::lanes::{LANES, Lanes};
 

@@ -1,9 +1,9 @@
 //! The second sweep: what particles show of their stress, and its forces.
 
 use super::add_moment;
-use crate::sph::momentum::{Forces, Momentum, PairStress, SoftSquare, Viscous};
-use crate::sph::neighbourhood::{Neighbourhood, gather, gather_all, records};
-use crate::sph::terms::{ARTIFICIAL_STRESS, TermSums};
+use crate::momentum::{Forces, Momentum, PairStress, SoftSquare, Viscous};
+use crate::neighbourhood::{Neighbourhood, gather, gather_all, records};
+use crate::terms::{ARTIFICIAL_STRESS, TermSums};
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
