@@ -1,7 +1,6 @@
 //! The constants of a material by the names that the input gives them.
 
-use super::declare::{Constants, Listed, Value};
-use super::eos::{Eos, LinearForm};
+use super::declare::{Constants, Value};
 use super::{Material, ThermalConstants};
 
 /// One constant.
@@ -19,15 +18,8 @@ impl Material {
     pub fn constants(&self) -> Vec<Constant> {
         let density = Value::Number(self.reference_density, "kg/m^3");
         let mut list = vec![constant("density", density)];
-        let (law, rows) = eos(&self.eos);
-        list.extend(group(law, rows));
-        if let Eos::Linear(linear) = &self.eos {
-            let form = match linear.form {
-                LinearForm::Logarithmic => "logarithmic",
-                LinearForm::DensityRatio => "density_ratio",
-            };
-            list.push(constant("eos.linear.form", Value::Word(form)));
-        }
+        let (law, rows) = self.eos.constants();
+        list.extend(group(&format!("eos.{law}"), rows));
         match self.strength.constants() {
             None => list.push(constant("strength", Value::Word("none"))),
             Some((law, rows)) => list.extend(group(&format!("strength.{law}"), rows)),
@@ -54,19 +46,6 @@ fn group(law: &str, rows: Constants) -> impl Iterator<Item = Constant> + use<> {
     let law = law.to_owned();
     rows.into_iter()
         .map(move |(key, value)| constant(&format!("{law}.{key}"), value))
-}
-
-fn eos(eos: &Eos) -> (&'static str, Constants) {
-    match eos {
-        Eos::Linear(law) => (
-            "eos.linear",
-            vec![("bulk_modulus", Value::Number(law.bulk_modulus, "Pa"))],
-        ),
-        Eos::MieGruneisen(law) => ("eos.mie_gruneisen", law.constants()),
-        Eos::Tait(law) => ("eos.tait", law.constants()),
-        Eos::Tillotson(law) => ("eos.tillotson", law.constants()),
-        Eos::IdealGas(law) => ("eos.ideal_gas", law.constants()),
-    }
 }
 
 fn heat(constants: &ThermalConstants) -> Constants {

@@ -16,7 +16,7 @@ pub mod thermal;
 
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
-pub use eos::{Eos, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
+pub use eos::{Eos, EquationOfState, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
 pub use point::*;
 pub(crate) use point::{FAILED, point_fields, point_lanes};
 pub use rest::{NEGLIGIBLE, Rest};

@@ -11,7 +11,7 @@
 //! reference density at a reference pressure, and a body that states no specific energy begins at
 //! that pressure.
 
-use super::PointResponse;
+use super::{EquationOfState, PointResponse};
 
 law! {
     /// Ideal or stiffened gas.
@@ -26,12 +26,6 @@ law! {
 }
 
 impl IdealGas {
-    /// Bulk modulus `γ (p + p_∞)` of the reference state (Pa).
-    #[must_use]
-    pub fn bulk_modulus(&self) -> f64 {
-        self.gamma * (self.reference_pressure + self.stiffening_pressure)
-    }
-
     /// Specific energy (J/kg) at the reference pressure and density `rho` (kg/m³).
     #[must_use]
     pub fn reference_energy(&self, rho: f64) -> f64 {
@@ -49,5 +43,23 @@ impl IdealGas {
             dp_drho,
             dp_de: (self.gamma - 1.0) * rho,
         }
+    }
+}
+
+impl EquationOfState for IdealGas {
+    const APART: bool = true;
+
+    /// `γ (p + p_∞)`.
+    fn bulk_modulus(&self, _rho0: f64) -> f64 {
+        self.gamma * (self.reference_pressure + self.stiffening_pressure)
+    }
+
+    fn reference_energy(&self, rho: f64) -> f64 {
+        self.reference_energy(rho)
+    }
+
+    #[inline]
+    fn at(&self, _rho0: f64, rho: f64, e: f64) -> PointResponse {
+        self.response(rho, e)
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::PointResponse;
+use super::{EquationOfState, PointResponse};
 
 /// How the pressure of [`Linear`] depends on the density.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -14,20 +14,34 @@ pub enum LinearForm {
     DensityRatio,
 }
 
-/// Pressure from the density alone, by the bulk modulus.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Linear {
-    /// Bulk modulus K (Pa).
-    pub bulk_modulus: f64,
-    /// Dependence on the density.
-    pub form: LinearForm,
+impl LinearForm {
+    /// Its name in the input.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Logarithmic => "logarithmic",
+            Self::DensityRatio => "density_ratio",
+        }
+    }
 }
 
-impl Linear {
-    /// Pressure and derivatives at density `rho`, for the reference density `rho0` (kg/m³).
-    #[must_use]
+law! {
+    /// Pressure from the density alone, by the bulk modulus.
+    Linear {
+        /// Bulk modulus K (Pa).
+        bulk_modulus: "Pa",
+        /// Dependence on the density.
+        form: LinearForm,
+    }
+}
+
+impl EquationOfState for Linear {
+    fn bulk_modulus(&self, _rho0: f64) -> f64 {
+        self.bulk_modulus
+    }
+
     #[inline]
-    pub fn response(&self, rho0: f64, rho: f64) -> PointResponse {
+    fn at(&self, rho0: f64, rho: f64, _e: f64) -> PointResponse {
         let k = self.bulk_modulus;
         let (pressure, dp_drho) = match self.form {
             LinearForm::Logarithmic => (k * libm::log(rho / rho0), k / rho),

@@ -29,8 +29,8 @@
 //! 0`. For aluminium 2024, `μ_N = 1.18` is reached by the shock of a symmetric impact at 21 km/s;
 //! the floor of D lies at `μ = 2.66`.
 
-use super::PointResponse;
-use crate::material::{at_least, at_most};
+use super::{EquationOfState, PointResponse, Response, map};
+use crate::material::{Lanes, at_least, at_most};
 
 /// Grüneisen parameter of a monatomic gas.
 const THIN: f64 = 2.0 / 3.0;
@@ -62,8 +62,29 @@ law! {
 
 /// Where the numerator N of a [`MieGruneisen`] stops to grow; the same for all points.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bounds {
+struct Bounds {
     mu_n: f64,
+}
+
+impl EquationOfState for MieGruneisen {
+    fn bulk_modulus(&self, rho0: f64) -> f64 {
+        rho0 * self.c0 * self.c0
+    }
+
+    #[inline(always)]
+    fn linear_density(&self, rho0: f64, rho: f64) -> f64 {
+        at_least(rho, DENSE * rho0)
+    }
+
+    fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        self.response(rho0, rho, e)
+    }
+
+    #[inline(always)]
+    fn of_batch(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
+        let bounds = self.bounds();
+        map(rho, e, |rho, e| self.bounded_response(bounds, rho0, rho, e))
+    }
 }
 
 impl MieGruneisen {
@@ -75,7 +96,7 @@ impl MieGruneisen {
     }
 
     /// The positive root of `dN/dμ = 1 + 2 a μ − (3 b/2) μ²`, `a = 1 − γ₀/2`; infinite if none.
-    pub(super) fn bounds(&self) -> Bounds {
+    fn bounds(&self) -> Bounds {
         let a = 1.0 - 0.5 * self.gamma0;
         let discriminant = 4.0 * a * a + 6.0 * self.b;
         let mu_n = if discriminant < 0.0 {
@@ -93,7 +114,7 @@ impl MieGruneisen {
 
     /// [`Self::response`] with the bounds at hand; selects only, so that lanes vectorise.
     #[inline(always)]
-    pub(super) fn bounded_response(
+    fn bounded_response(
         &self,
         bounds: Bounds,
         rho0: f64,

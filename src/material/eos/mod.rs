@@ -1,33 +1,9 @@
 //! Equations of state: pressure from density and specific energy.
+//!
+//! One is a file that implements [`EquationOfState`]; its row here gives it a name and a key of the input, its rows in
+//! `input/schema/materials.rs` its constants.
 
-pub mod ideal_gas;
-pub mod linear;
-pub mod mie_gruneisen;
-pub mod tait;
-pub mod tillotson;
-
-pub use ideal_gas::IdealGas;
-pub use linear::{Linear, LinearForm};
-pub use mie_gruneisen::MieGruneisen;
-pub use tait::Tait;
-pub use tillotson::Tillotson;
-
-use super::{LANES, Lanes};
-
-/// The equation of state of a material.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Eos {
-    /// Pressure linear in the volumetric strain or in the density, without heat.
-    Linear(Linear),
-    /// Mie–Grüneisen about the Hugoniot of the reference state.
-    MieGruneisen(MieGruneisen),
-    /// Tait's law of a liquid, without heat.
-    Tait(Tait),
-    /// Tillotson's law, from cold compression to vapour.
-    Tillotson(Tillotson),
-    /// Ideal or stiffened gas.
-    IdealGas(IdealGas),
-}
+use super::{Constants, Contradiction, LANES, Lanes, Listed};
 
 /// Pressure and its derivatives at one state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,80 +18,142 @@ pub struct PointResponse {
 
 /// [`PointResponse`] of each point of a batch.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Response {
+pub struct Response {
+    /// Pressures (Pa).
     pub pressure: Lanes,
+    /// ∂p/∂ρ (m²/s²).
     pub dp_drho: Lanes,
+    /// ∂p/∂e (kg/m³).
     pub dp_de: Lanes,
 }
 
-impl Eos {
-    /// Bulk modulus in the reference state (Pa), for a reference density in kg/m³.
-    #[must_use]
-    pub fn bulk_modulus(&self, reference_density: f64) -> f64 {
-        match self {
-            Self::Linear(eos) => eos.bulk_modulus,
-            Self::MieGruneisen(eos) => reference_density * eos.c0 * eos.c0,
-            Self::Tait(eos) => eos.gamma * eos.b,
-            Self::Tillotson(eos) => eos.bulk_modulus,
-            Self::IdealGas(eos) => eos.bulk_modulus(),
-        }
+/// One equation of state.
+pub trait EquationOfState: Listed {
+    /// Whether it acts in a function of its own, as equations that raise to powers do: inside the vector code, their
+    /// calls slow down those that have no need of them.
+    const APART: bool = false;
+
+    /// What is wrong with constants that are each within their range.
+    fn contradiction(&self) -> Option<Contradiction> {
+        None
     }
+
+    /// Bulk modulus in the reference state (Pa), for a reference density in kg/m³.
+    fn bulk_modulus(&self, rho0: f64) -> f64;
 
     /// Specific energy (J/kg) of the reference state at density `rho` (kg/m³): where a body
     /// begins that states none.
-    #[must_use]
-    pub fn reference_energy(&self, rho: f64) -> f64 {
-        match self {
-            Self::IdealGas(eos) => eos.reference_energy(rho),
-            Self::Linear(_) | Self::MieGruneisen(_) | Self::Tait(_) | Self::Tillotson(_) => 0.0,
-        }
+    fn reference_energy(&self, _rho: f64) -> f64 {
+        0.0
     }
 
     /// The density (kg/m³) from which pressure is linear up to that of torn matter, for matter of the mean
     /// density `rho`.
     #[inline(always)]
-    #[must_use]
-    pub fn linear_density(&self, rho0: f64, rho: f64) -> f64 {
-        match self {
-            Self::MieGruneisen(_) => super::at_least(rho, mie_gruneisen::DENSE * rho0),
-            _ => rho,
-        }
+    fn linear_density(&self, _rho0: f64, rho: f64) -> f64 {
+        rho
     }
 
     /// Pressure and derivatives at one state: reference density and density (kg/m³), specific
     /// energy (J/kg).
-    #[must_use]
-    pub fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
-        match self {
-            Self::Linear(eos) => eos.response(rho0, rho),
-            Self::MieGruneisen(eos) => eos.response(rho0, rho, e),
-            Self::Tait(eos) => eos.response(rho0, rho),
-            Self::Tillotson(eos) => eos.response(rho0, rho, e),
-            Self::IdealGas(eos) => eos.response(rho, e),
-        }
-    }
+    fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse;
 
-    /// Pressure and derivatives of a batch, from reference density and densities (kg/m³) and
-    /// specific energies (J/kg).
+    /// [`Self::at`] of a batch.
     #[inline(always)]
-    pub(super) fn response(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
-        match self {
-            Self::Linear(eos) => map(rho, e, |rho, _| eos.response(rho0, rho)),
-            Self::MieGruneisen(eos) => {
-                let bounds = eos.bounds();
-                map(rho, e, |rho, e| eos.bounded_response(bounds, rho0, rho, e))
-            }
-            _ => self.transcendental_response(rho0, rho, e),
-        }
-    }
-
-    /// [`Self::response`] of the equations that raise to powers. A function of its own: inside the
-    /// vector code, their calls slow down those that have no need of them.
-    #[inline(never)]
-    fn transcendental_response(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
+    fn of_batch(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
         map(rho, e, |rho, e| self.at(rho0, rho, e))
     }
 }
+
+/// Makes [`Eos`] of its table.
+macro_rules! equations_of_state {
+    ($( $(#[doc = $doc:literal])+ $key:ident: $law:ident; )+) => {
+        $( mod $key; )+
+        $( pub use $key::$law; )+
+
+        /// The equation of state of a material.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum Eos {
+            $( $(#[doc = $doc])+ $law($law), )+
+        }
+
+        impl Eos {
+            /// Key of the law in the input and its constants.
+            #[must_use]
+            pub fn constants(&self) -> (&'static str, Constants) {
+                match self {
+                    $( Self::$law(law) => (stringify!($key), law.constants()), )+
+                }
+            }
+
+            /// See [`EquationOfState::bulk_modulus`].
+            #[must_use]
+            pub fn bulk_modulus(&self, rho0: f64) -> f64 {
+                match self {
+                    $( Self::$law(law) => EquationOfState::bulk_modulus(law, rho0), )+
+                }
+            }
+
+            /// See [`EquationOfState::reference_energy`].
+            #[must_use]
+            pub fn reference_energy(&self, rho: f64) -> f64 {
+                match self {
+                    $( Self::$law(law) => EquationOfState::reference_energy(law, rho), )+
+                }
+            }
+
+            /// See [`EquationOfState::linear_density`].
+            #[inline(always)]
+            #[must_use]
+            pub fn linear_density(&self, rho0: f64, rho: f64) -> f64 {
+                match self {
+                    $( Self::$law(law) => law.linear_density(rho0, rho), )+
+                }
+            }
+
+            /// See [`EquationOfState::at`].
+            #[must_use]
+            pub fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+                match self {
+                    $( Self::$law(law) => law.at(rho0, rho, e), )+
+                }
+            }
+
+            /// Pressure and derivatives of a batch, from reference density and densities (kg/m³) and
+            /// specific energies (J/kg).
+            #[inline(always)]
+            pub(super) fn response(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
+                match self {
+                    $( Self::$law(law) if !$law::APART => law.of_batch(rho0, rho, e), )+
+                    _ => self.apart(rho0, rho, e),
+                }
+            }
+
+            /// [`Self::response`] of the equations that act in a function of their own.
+            #[inline(never)]
+            fn apart(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
+                match self {
+                    $( Self::$law(law) => law.of_batch(rho0, rho, e), )+
+                }
+            }
+        }
+    };
+}
+
+// The key below `eos` in the input, and the law. A material has one of them.
+equations_of_state! {
+    /// Pressure linear in the volumetric strain or in the density, without heat.
+    linear: Linear;
+    /// Mie–Grüneisen about the Hugoniot of the reference state.
+    mie_gruneisen: MieGruneisen;
+    /// Tait's law of a liquid, without heat.
+    tait: Tait;
+    /// Tillotson's law, from cold compression to vapour.
+    tillotson: Tillotson;
+    /// Ideal or stiffened gas.
+    ideal_gas: IdealGas;
+}
+pub use linear::LinearForm;
 
 /// Applies the response of one point to all lanes.
 #[inline(always)]

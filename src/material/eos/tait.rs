@@ -8,7 +8,7 @@
 //! Comput. Phys. 110, 399) c₀ is set to some ten times the largest velocity instead of the
 //! liquid's own speed of sound, which keeps the density within a percent and steps long.
 
-use super::PointResponse;
+use super::{EquationOfState, PointResponse};
 
 law! {
     /// Tait's law.
@@ -40,5 +40,18 @@ impl Tait {
             dp_drho: self.gamma * self.b * power / rho,
             dp_de: 0.0,
         }
+    }
+}
+
+impl EquationOfState for Tait {
+    const APART: bool = true;
+
+    fn bulk_modulus(&self, _rho0: f64) -> f64 {
+        self.gamma * self.b
+    }
+
+    #[inline]
+    fn at(&self, rho0: f64, rho: f64, _e: f64) -> PointResponse {
+        self.response(rho0, rho)
     }
 }

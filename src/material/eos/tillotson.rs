@@ -21,7 +21,8 @@
 //! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½.
 //! The expanded cold branch bears any tension: a spall cut-off ends it.
 
-use super::PointResponse;
+use super::{EquationOfState, PointResponse};
+use crate::material::Contradiction;
 
 /// Smallest `w − 1`.
 const LEAST: f64 = -0.5;
@@ -59,6 +60,25 @@ struct Shared {
     mu: f64,
     /// `b ρ e/w` and its derivatives by ρ and e.
     hot: PointResponse,
+}
+
+impl EquationOfState for Tillotson {
+    const APART: bool = true;
+
+    fn contradiction(&self) -> Option<Contradiction> {
+        (self.e_cv <= self.e_iv).then_some(Contradiction {
+            keys: &["e_cv", "e_iv"],
+            title: "`e_cv` must be above `e_iv`: complete vaporisation takes more than incipient",
+        })
+    }
+
+    fn bulk_modulus(&self, _rho0: f64) -> f64 {
+        self.bulk_modulus
+    }
+
+    fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        self.response(rho0, rho, e)
+    }
 }
 
 impl Tillotson {
