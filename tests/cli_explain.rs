@@ -44,7 +44,7 @@ fn a_case_is_explained_key_by_key() {
     line("end_time = \"1 us\" ", &format!("# {path}:8"));
     line("shape.sphere.radius = \"0.4 mm\" ", "# --set");
     line("alpha = 0.7 ", "# --set");
-    line("# beta = 2.0 ", "# default");
+    line("# beta = 2 ", "# default");
     line("# time_step.courant = 0.5 ", "# default");
     line("# history_every ", "# default: 250 rows a run");
     line("density = \"8.9 g/cm^3\" ", &format!("# {path}:5"));

@@ -83,7 +83,7 @@ pub fn run(args: &GenerateArgs, program: Command) -> u8 {
             0
         }
         What::Reference => {
-            say(reference::page(&input::schema()).trim_end());
+            say(reference::page(&input::described()).trim_end());
             0
         }
         What::Materials => {

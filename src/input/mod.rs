@@ -27,7 +27,7 @@ mod validate;
 
 use std::path::{Path, PathBuf};
 
-use crate::model::{Case, units};
+use crate::model::{Case, SphOptions, units};
 use source::{Diagnostic, Sources};
 
 pub use case_file::text;
@@ -35,11 +35,17 @@ pub use difference::{Difference, differences};
 pub use explain::{Explained, explain};
 pub use file::{content, open_regular};
 pub use keys::{keys, restartable_keys};
-pub use schema::describe::{referred, stated};
+pub use schema::describe::{ABSENT, referred};
 
 /// The JSON schema of cases.
 #[must_use]
 pub fn schema() -> serde_json::Value {
+    schema::describe::published(described())
+}
+
+/// The same, with what holds without a key as a text of its own, [`ABSENT`].
+#[must_use]
+pub fn described() -> serde_json::Value {
     schema::describe::schema::<schema::CaseParams>("A case of whipple")
 }
 
@@ -92,7 +98,7 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, Input
     with_sources(Some((name, text)), overrides, |places| {
         let (params, resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        let mut case = validate::case(params, folder)?;
+        let mut case = validate::case(&params, folder)?;
         case.resolved = settle::settle(resolved, folder, &case)?;
         Ok(case)
     })
@@ -123,6 +129,13 @@ pub fn time(text: &str) -> Result<f64, String> {
         Ok(_) => Err(format!("`{text}`: {}", expected())),
         Err(cause) => Err(format!("`{text}`: {cause}; {}", expected())),
     }
+}
+
+/// The options of the SPH sums of a case that says nothing of them.
+#[must_use]
+pub fn usual_sph() -> SphOptions {
+    let read = validate::sph(&schema::SphParams::default());
+    read.map_or_else(|_| unreachable!("nothing is typed"), |(options, _)| options)
 }
 
 /// Does some reading in an address space of the text and the overrides, whose first addresses it

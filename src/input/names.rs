@@ -2,6 +2,7 @@
 
 use toml::Spanned;
 
+use super::schema::CaseParams;
 use super::source::Diagnostic;
 use crate::model::readable::is_printable;
 
@@ -40,21 +41,19 @@ pub fn check(name: &Spanned<String>, of: &str) -> Result<(), Diagnostic> {
 }
 
 /// The title: any one line that a terminal can show.
-pub fn title(title: Option<Spanned<String>>) -> Result<String, Diagnostic> {
-    let Some(title) = title else {
-        return Ok("untitled".to_owned());
-    };
-    let text = title.get_ref();
+pub fn title(params: &CaseParams) -> Result<String, Diagnostic> {
+    let text = params.title();
+    let at = || params.title.as_ref().map_or(0..0, Spanned::span);
     if let Some(c) = text.chars().find(|c| !is_printable(*c)) {
         let what = format!(
             "`title` must be one line without control characters, found `{}`",
             c.escape_unicode()
         );
-        return Err(Diagnostic::new(title.span(), what));
+        return Err(Diagnostic::new(at(), what));
     }
     if text.chars().count() > LONGEST_TITLE {
         let what = format!("`title` can have {LONGEST_TITLE} characters at most");
-        return Err(Diagnostic::new(title.span(), what));
+        return Err(Diagnostic::new(at(), what));
     }
-    Ok(title.into_inner())
+    Ok(text)
 }

@@ -3,6 +3,8 @@
 //! Modes with forces are registered in [`contact_modes`]. Each has its parameters in a file here,
 //! the table of its keys in one of `input/schema/contact/`, and its forces in one of `contact/`.
 
+use serde::Deserialize;
+
 mod overlap;
 mod penalty;
 mod potential;
@@ -137,7 +139,8 @@ impl ContactMode {
 }
 
 /// Along what contact forces act.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactDirection {
     /// The line between two particles, as the gradient of an energy.
     Pair,

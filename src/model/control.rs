@@ -20,13 +20,12 @@ pub enum SmoothingLength {
 }
 
 /// How the SPH sums take gradients.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SphForm {
     /// By the gradient of the kernel.
     Conventional,
     /// By gradients that a smooth function of the neighbours' moments corrects.
-    #[default]
     Corrected,
     /// By the corrected gradient of the normalised kernel.
     Normalised,
@@ -55,23 +54,6 @@ pub struct SphOptions {
     pub xsph: f64,
     /// Stiffness ξ of the hourglass control of the corrected form, over the P-wave modulus.
     pub hourglass: f64,
-}
-
-impl Default for SphOptions {
-    /// Viscosity of α = 1 and β = 2, and nothing else.
-    fn default() -> Self {
-        Self {
-            form: SphForm::default(),
-            alpha: 1.0,
-            beta: 2.0,
-            smoothing_length: SmoothingLength::Constant,
-            artificial_stress: 0.0,
-            balsara: false,
-            conduction: 0.0,
-            xsph: 0.0,
-            hourglass: 0.1,
-        }
-    }
 }
 
 /// Stability factors of the explicit scheme.
@@ -196,11 +178,10 @@ pub struct SnapshotSchedule {
 }
 
 /// How many digits numbers are written with.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
     /// Floating-point numbers of 64 bits.
-    #[default]
     Double,
     /// Of 32 bits.
     Single,

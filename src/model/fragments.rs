@@ -3,11 +3,10 @@
 use serde::Deserialize;
 
 /// What belongs to fragments.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Include {
     /// What has not failed.
-    #[default]
     Intact,
     /// All matter.
     All,

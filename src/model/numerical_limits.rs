@@ -6,11 +6,10 @@ use serde::Deserialize;
 use super::Case;
 
 /// What happens to a particle whose state is out of range.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NumericalFailurePolicy {
     /// The run ends.
-    #[default]
     Stop,
     /// The particle is taken out and its mass, momentum and energy are booked.
     Remove,
@@ -56,12 +55,10 @@ impl Default for NumericalLimits {
 const SPEEDS: f64 = 20.0;
 /// Smallest step over the time in which the natural speed crosses the shortest smoothing length.
 const STEPS: f64 = 1e-6;
-/// Largest kinetic energy over what could drive it, which a sound run never reaches once.
-const GAIN: f64 = 10.0;
 
 impl NumericalLimits {
-    /// Ranges that no healthy run of a case leaves, however violent: they are made of its own
-    /// velocities, sound speeds, energies and lengths.
+    /// Ranges of speed, energy and step that no healthy run of a case leaves, however violent: they are made of
+    /// its own velocities, sound speeds, energies and lengths.
     #[must_use]
     pub fn natural(case: &Case) -> Self {
         let speed = Self::natural_speed(case);
@@ -73,16 +70,13 @@ impl NumericalLimits {
             f64::INFINITY
         };
         Self {
-            policy: NumericalFailurePolicy::Stop,
             speed_max,
             energy_max: 0.5 * speed_max * speed_max,
-            density_min: 1e-6,
-            density_max: 100.0,
             step_min: STEPS
                 * (shortest / speed)
                     .min(case.time_step.max)
                     .min(case.run.end_time),
-            gain_max: GAIN,
+            ..Self::default()
         }
     }
 

@@ -14,8 +14,8 @@ pub mod virtual_ranks;
 use whipple::material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use whipple::model::{
     Axis, Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads,
-    MeasureOptions, OutputOptions, Overlap, RunControl, Shape, SphOptions, SymmetryPlane,
-    TimeStepOptions, Vec3,
+    MeasureOptions, OutputOptions, Overlap, RunControl, Shape, SymmetryPlane, TimeStepOptions,
+    Vec3,
 };
 
 /// A body on a cubic lattice with h = 1.3 Δp.
@@ -53,7 +53,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         fragments: None,
         symmetry: Vec::new(),
         loads: Loads::default(),
-        sph: SphOptions::default(),
+        sph: whipple::input::usual_sph(),
         numerical_limits: whipple::model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.4,

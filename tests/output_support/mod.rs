@@ -13,7 +13,7 @@ pub use sentinel::{id, mix, sentinel};
 use whipple::comm::Comm;
 use whipple::model::{
     Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
-    OutputOptions, RunControl, Shape, SphOptions, SymmetryPlane, TimeStepOptions, Vec3,
+    OutputOptions, RunControl, Shape, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use whipple::output::snapshot;
 use whipple::particles::{FIELDS, ParticleStore};
@@ -54,7 +54,7 @@ pub fn case() -> Case {
             position: 0.0,
         }],
         loads: Loads::default(),
-        sph: SphOptions::default(),
+        sph: whipple::input::usual_sph(),
         numerical_limits: whipple::model::NumericalLimits::default(),
         time_step: TimeStepOptions {
             courant: 0.3,

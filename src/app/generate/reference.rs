@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value};
 
-use crate::input::{referred, stated};
+use crate::input::{ABSENT, referred};
 
 /// What the page says before its tables.
 const HEAD: &str = "\
@@ -25,7 +25,7 @@ explains what the keys do and how they go together.
 /// Tables by their names in the schema.
 type Tables = Map<String, Value>;
 
-/// The page of a schema (that of [`crate::input::schema`]).
+/// The page of a schema (that of [`crate::input::described`]).
 pub fn page(schema: &Value) -> String {
     let mut page = HEAD.to_owned();
     let empty = Tables::new();
@@ -72,11 +72,11 @@ fn write_table(page: &mut String, table: &Value, tables: &Tables) {
     let required = table["required"].as_array();
     for (key, value) in table["properties"].as_object().into_iter().flatten() {
         let must = required.is_some_and(|keys| keys.iter().any(|other| other == key.as_str()));
-        let (meaning, default) = stated(text(value, "description"));
+        let meaning = text(value, "description").trim_end_matches('.');
         let default = if must {
             "*required*"
         } else {
-            default.unwrap_or("–")
+            value[ABSENT].as_str().unwrap_or("–")
         };
         let kind = kind(value, tables).replace('|', "\\|");
         let _ = writeln!(page, "| `{key}` | {kind} | {default} | {meaning} |");

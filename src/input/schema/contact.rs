@@ -10,7 +10,6 @@ use toml::Spanned;
 
 use super::{FrictionParams, SelfContactParams};
 use crate::input::source::Diagnostic;
-use crate::input::validate::check::{Allowed, number};
 use crate::model::{ContactDirection, ContactMode, Resistance, SphForm, contact_modes};
 use overlap::OverlapParams;
 use penalty::PenaltyParams;
@@ -19,22 +18,22 @@ use potential::PotentialParams;
 optional_tables! {
     /// `[contact]`
     ContactParams {
-        /// Mode of all pairs that have no own; `"overlap"` if absent.
-        mode: Option<ModeName>,
-        /// Coefficients of friction; `0` if absent.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping; `0` if absent.
-        damping: Option<Spanned<f64>>,
-        /// Contact of a body with itself; where matter may fail if absent.
-        self_contact: Option<Spanned<SelfContactParams>>,
+        /// Mode of all pairs that have no own.
+        mode: Option<ModeName> = ModeName::Overlap;
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>> = 0.0, NotNegative;
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
+        /// Contact of a body with itself.
+        self_contact: Option<Spanned<SelfContactParams>> => "where matter may fail";
         /// Parameters of the mode `overlap`.
-        overlap: OverlapParams,
+        overlap: OverlapParams;
         /// Parameters of the mode `potential`.
-        potential: PotentialParams,
+        potential: PotentialParams;
         /// Parameters of the mode `penalty`.
-        penalty: PenaltyParams,
+        penalty: PenaltyParams;
         /// Pairs with a mode or parameters of their own.
-        pair: Vec<PairParams>,
+        pair: Vec<PairParams>;
     }
 }
 
@@ -42,22 +41,22 @@ tables! {
     /// `[[contact.pair]]`
     PairParams {
         /// Names of two bodies.
-        bodies: Spanned<Vec<Spanned<String>>>,
-        /// What happens where they meet; as for all others if absent.
-        mode: Option<ModeName>,
-        /// Coefficients of friction; the case's if absent.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping; the case's if absent.
-        damping: Option<Spanned<f64>>,
+        bodies: Spanned<Vec<Spanned<String>>>;
+        /// What happens where they meet.
+        mode: Option<ModeName> => "as for all others";
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>>, NotNegative => "the case's";
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>>, Within(0.0, 1.0) => "the case's";
         /// Parameters of the mode `overlap`.
         #[serde(default)]
-        overlap: OverlapParams,
+        overlap: OverlapParams;
         /// Parameters of the mode `potential`.
         #[serde(default)]
-        potential: PotentialParams,
+        potential: PotentialParams;
         /// Parameters of the mode `penalty`.
         #[serde(default)]
-        penalty: PenaltyParams,
+        penalty: PenaltyParams;
     }
 }
 
@@ -75,13 +74,6 @@ choices! {
         /// Penalty between boundary particles.
         Penalty,
     }
-    /// Along what contact forces act.
-    DirectionName {
-        /// The line between particles.
-        Pair,
-        /// The normal of the surfaces.
-        Normal,
-    }
 }
 
 /// A choice of mode with the parameters of all modes, of which a pair takes what it does not give.
@@ -95,7 +87,7 @@ pub struct Choice {
 impl Default for Choice {
     fn default() -> Self {
         Self {
-            mode: ModeName::Overlap,
+            mode: ContactParams::default().mode(),
             resistance: Resistance::default(),
             laws: Laws::default(),
         }
@@ -144,16 +136,15 @@ macro_rules! read {
         impl $Table {
             /// What this table chooses; the rest is that of `base`.
             pub fn choice(&self, base: &Choice, form: SphForm) -> Result<Choice, Diagnostic> {
-                let (friction, damping) = (self.friction.as_ref(), self.damping.as_ref());
                 let shared = Shared {
-                    resistance: resistance(friction, damping, base.resistance)?,
+                    resistance: resistance(self.friction()?, self.damping()?, base.resistance),
                     form,
                 };
                 Ok(Choice {
                     mode: self.mode.unwrap_or(base.mode),
                     resistance: shared.resistance,
                     laws: Laws {
-                        $($name: self.$name.law(base.laws.$name, &shared)?,)+
+                        $($name: self.$name.parameters(base.laws.$name, &shared)?,)+
                     },
                 })
             }
@@ -162,53 +153,35 @@ macro_rules! read {
 }
 contact_modes!(choice);
 
-/// Friction and damping; what is not given is that of `base`.
+/// Friction, of faces that stick and of those that slide, and damping; what is not given is that of `base`.
 pub fn resistance(
-    friction: Option<&Spanned<FrictionParams>>,
-    damping: Option<&Spanned<f64>>,
+    friction: impl Into<Option<[f64; 2]>>,
+    damping: impl Into<Option<f64>>,
     base: Resistance,
-) -> Result<Resistance, Diagnostic> {
-    let of = |value: &Spanned<f64>, key: &str| {
-        number(Some(value), key, 0.0, Allowed::NotNegative).map(Some)
-    };
-    let [sticking, sliding] = match friction.map(|f| (f.get_ref(), f.span())) {
-        None => [None, None],
-        Some((&FrictionParams::One(value), at)) => [of(&Spanned::new(at, value), "friction")?; 2],
-        Some((FrictionParams::Two(table), _)) => {
-            let [sticking, sliding] = [
-                of(&table.r#static, "static")?,
-                of(&table.kinetic, "kinetic")?,
-            ];
-            if sliding > sticking {
-                let title = "`kinetic` must be at most `static`";
-                return Err(Diagnostic::new(table.kinetic.span(), title).label("out of range"));
-            }
-            [sticking, sliding]
-        }
-    };
-    Ok(Resistance {
-        static_friction: sticking.unwrap_or(base.static_friction),
-        kinetic_friction: sliding.unwrap_or(base.kinetic_friction),
-        damping: number(damping, "damping", base.damping, Allowed::Within(0.0, 1.0))?,
-    })
+) -> Resistance {
+    let known = [base.static_friction, base.kinetic_friction];
+    let [static_friction, kinetic_friction] = friction.into().unwrap_or(known);
+    Resistance {
+        static_friction,
+        kinetic_friction,
+        damping: damping.into().unwrap_or(base.damping),
+    }
 }
 
 /// Normals are those of corrected gradients.
 fn direction(
-    name: Option<&Spanned<DirectionName>>,
+    name: Option<&Spanned<ContactDirection>>,
     base: ContactDirection,
     shared: &Shared,
 ) -> Result<ContactDirection, Diagnostic> {
     let Some(name) = name else {
         return Ok(base);
     };
-    match (name.get_ref(), shared.form) {
-        (DirectionName::Pair, _) => Ok(ContactDirection::Pair),
-        (DirectionName::Normal, SphForm::Normalised) => Ok(ContactDirection::Normal),
-        (DirectionName::Normal, _) => {
-            let title = "contact along normals needs the corrected gradients of normalised SPH";
-            let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
-            Err(Diagnostic::new(name.span(), title).help(help))
-        }
+    let direction = *name.get_ref();
+    if direction == ContactDirection::Normal && shared.form != SphForm::Normalised {
+        let title = "contact along normals needs the corrected gradients of normalised SPH";
+        let help = "set `form = \"normalised\"` in [sph], or take \"pair\"";
+        return Err(Diagnostic::new(name.span(), title).help(help));
     }
+    Ok(direction)
 }

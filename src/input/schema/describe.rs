@@ -1,7 +1,7 @@
 //! The tables as a JSON schema (draft 7), by which editors complete and check a case.
 
 use serde::Deserialize;
-use serde::de::value::Error;
+use serde::de::value::{Error, StrDeserializer};
 use serde::de::{Deserializer, Error as _, Visitor};
 use serde_json::{Map, Value, json};
 use toml::Spanned;
@@ -11,7 +11,10 @@ use crate::input::forms::{Named, OneOrMany, OrNone};
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
 use crate::material::{AfterSpall, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
-use crate::model::{Axis, Include, LatticeKind, NumericalFailurePolicy, Precision, SphForm};
+use crate::model::{
+    Axis, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
+    PotentialRange, Precision, SphForm,
+};
 
 /// What may be typed.
 pub trait Described {
@@ -45,7 +48,33 @@ pub struct Key {
     pub optional: bool,
     /// What may be typed.
     pub value: fn(&mut Definitions) -> Value,
+    /// What is so without it.
+    pub absent: Absent,
 }
+
+/// What is so if a key is absent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Absent {
+    /// The value that the key has then, if that is always the same.
+    pub value: Option<Value>,
+    /// In words; nothing if nothing is.
+    pub words: Option<String>,
+}
+
+impl Absent {
+    /// A value, which may be that of `other` instead, or is told by `words`.
+    pub fn with(value: Value, other: Option<&str>, words: Option<&str>) -> Self {
+        let other = other.map_or_else(String::new, |other| format!(", or {other}"));
+        let words = words.map_or_else(|| format!("`{value}`{other}"), str::to_owned);
+        Self {
+            value: Some(value),
+            words: Some(words),
+        }
+    }
+}
+
+/// Where internal schemas hold [`Absent::words`] of a key; the value is its `default`.
+pub const ABSENT: &str = "absent";
 
 impl Key {
     /// As it is typed.
@@ -66,6 +95,12 @@ impl Definitions {
                     value = json!({ "allOf": [value] });
                 }
                 value["description"] = text(key.docs).into();
+                if let Some(default) = &key.absent.value {
+                    value["default"] = default.clone();
+                }
+                if let Some(words) = &key.absent.words {
+                    value[ABSENT] = words.as_str().into();
+                }
                 (key.name().to_owned(), value)
             });
             let properties: Map<String, Value> = properties.collect();
@@ -102,15 +137,31 @@ pub fn text(docs: &[&str]) -> String {
     lines.join(" ")
 }
 
-/// What the documentation of a key says that it means, and what is so without it: of `Exponent; 7 if absent.` these
-/// are `Exponent` and `7`.
-#[must_use]
-pub fn stated(text: &str) -> (&str, Option<&str>) {
-    let said = text.strip_suffix(" if absent.");
-    match said.and_then(|said| said.rsplit_once("; ")) {
-        Some((meaning, default)) => (meaning, Some(default.trim_end_matches(','))),
-        None => (text.trim_end_matches('.'), None),
+/// A schema for others: what is so without a key stands in its description.
+pub fn published(mut schema: Value) -> Value {
+    match &mut schema {
+        Value::Object(entries) => {
+            if let Some(Value::String(words)) = entries.get(ABSENT)
+                && let Some(Value::String(meaning)) = entries.get("description")
+            {
+                let meaning = meaning.trim_end_matches('.');
+                let comma = if words.contains(", ") { "," } else { "" };
+                let text = format!("{meaning}; {words}{comma} if absent.");
+                entries.remove(ABSENT);
+                entries.insert("description".to_owned(), text.into());
+            }
+            for entry in entries.values_mut() {
+                *entry = published(entry.take());
+            }
+        }
+        Value::Array(entries) => {
+            for entry in entries {
+                *entry = published(entry.take());
+            }
+        }
+        _ => {}
     }
+    schema
 }
 
 /// One of several ways of typing what is `expected`.
@@ -153,12 +204,38 @@ pub fn words<'de, T: Deserialize<'de>>() -> Vec<String> {
     listed.split_whitespace().map(str::to_owned).collect()
 }
 
+/// The word for a value of such an enum.
+pub fn word<T: for<'de> Deserialize<'de> + PartialEq>(value: &T) -> Option<String> {
+    let read = |word: &str| T::deserialize(StrDeserializer::<Error>::new(word)).ok();
+    let mut words = words::<T>().into_iter();
+    words.find(|word| read(word).as_ref() == Some(value))
+}
+
 /// Types that serde reads as words to choose from.
 macro_rules! described_words {
     ($($choice:ty),+ $(,)?) => { $(
         impl $crate::input::schema::describe::Described for $choice {
             fn describe(_: &mut $crate::input::schema::describe::Definitions) -> serde_json::Value {
                 serde_json::json!({ "enum": $crate::input::schema::describe::words::<$choice>() })
+            }
+        }
+
+        impl $crate::input::schema::value::Typed for $choice {
+            type Stated = Self;
+            type Value = Self;
+
+            fn value(stated: Self) -> Self {
+                stated
+            }
+
+            fn written(stated: Self) -> serde_json::Value {
+                $crate::input::schema::describe::word(&stated).into()
+            }
+        }
+
+        impl $crate::input::schema::value::Free for $choice {
+            fn typed(&self) -> Self {
+                *self
             }
         }
     )+ };
@@ -168,6 +245,7 @@ pub(super) use described_words;
 described_words!(
     AfterSpall,
     Axis,
+    ContactDirection,
     Crosses,
     Effect,
     Flaws,
@@ -176,6 +254,8 @@ described_words!(
     LinearForm,
     Molten,
     NumericalFailurePolicy,
+    PenaltyLaw,
+    PotentialRange,
     Precision,
     RateForm,
     SphForm,
@@ -294,17 +374,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn documentation_says_what_is_so_without_a_key() {
-        assert_eq!(stated("A; b; 7 if absent."), ("A; b", Some("7")));
-        let of_all = "`4`, or that of all";
+    fn a_published_schema_says_in_words_what_is_so_without_a_key() {
+        let key = |words: &str| json!({ "properties": { "absent": { "description": "A; b.", ABSENT: words } } });
+        let text = |schema: Value| published(schema)["properties"]["absent"].clone();
         assert_eq!(
-            stated("A; `4`, or that of all, if absent."),
-            ("A", Some(of_all))
+            text(key("`7`")),
+            json!({ "description": "A; b; `7` if absent." })
         );
-        assert_eq!(stated("A; b."), ("A; b", None));
+        let absent = Absent::with(json!(4), Some("that of all"), None);
+        let words = absent.words.unwrap();
         assert_eq!(
-            stated("What it is if absent."),
-            ("What it is if absent", None)
+            text(key(&words))["description"],
+            "A; b; `4`, or that of all, if absent."
         );
+        assert_eq!(published(json!(["absent"])), json!(["absent"]));
     }
 }

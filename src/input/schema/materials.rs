@@ -14,115 +14,109 @@ optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
     MaterialParams {
         /// Name in the library.
-        library: Option<Spanned<String>>,
+        library: Option<Spanned<String>>;
         /// Reference density.
-        density: Option<Placed<Density>>,
+        density: Option<Placed<Density>>, Positive;
         /// Equation of state.
-        eos: Option<Spanned<EosParams>>,
+        eos: Option<Spanned<EosParams>>;
         /// Resistance to shear.
-        strength: Option<Spanned<OrNone<StrengthParams>>>,
+        strength: Option<Spanned<OrNone<StrengthParams>>>;
         /// How it fails.
-        failure: Option<Spanned<OrNone<FailureParams>>>,
+        failure: Option<Spanned<OrNone<FailureParams>>>;
         /// Temperature.
-        thermal: Option<Spanned<ThermalParams>>,
-    }
-
-    /// `eos`: exactly one of these.
-    EosParams {
-        /// Linear.
-        linear: Option<LinearParams>,
-        /// Mie–Grüneisen.
-        mie_gruneisen: Option<MieGruneisenParams>,
-        /// Tait.
-        tait: Option<TaitParams>,
-        /// Tillotson.
-        tillotson: Option<TillotsonParams>,
-        /// Ideal or stiffened gas.
-        ideal_gas: Option<IdealGasParams>,
-    }
-
-    /// `eos.linear`
-    LinearParams {
-        /// Bulk modulus.
-        bulk_modulus: Option<Placed<Pressure>>,
-        /// Dependence on the density ratio.
-        form: Option<LinearForm>,
-    }
-
-    /// `eos.mie_gruneisen`
-    MieGruneisenParams {
-        /// Bulk sound speed.
-        c0: Option<Placed<Velocity>>,
-        /// Hugoniot.
-        s1: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s2: Option<Spanned<f64>>,
-        /// Hugoniot.
-        s3: Option<Spanned<f64>>,
-        /// Grüneisen parameter.
-        gamma0: Option<Spanned<f64>>,
-        /// Its linear coefficient.
-        b: Option<Spanned<f64>>,
-    }
-
-    /// `eos.tait`
-    TaitParams {
-        /// Coefficient B; or the sound speed.
-        b: Option<Placed<Pressure>>,
-        /// Sound speed of the reference state.
-        sound_speed: Option<Placed<Velocity>>,
-        /// Exponent; 7 if absent.
-        gamma: Option<Spanned<f64>>,
-    }
-
-    /// `eos.tillotson`
-    TillotsonParams {
-        /// Coefficient a.
-        a: Option<Spanned<f64>>,
-        /// Coefficient b.
-        b: Option<Spanned<f64>>,
-        /// Bulk modulus A.
-        bulk_modulus: Option<Placed<Pressure>>,
-        /// Coefficient B.
-        quadratic_modulus: Option<Placed<Pressure>>,
-        /// Exponent α.
-        alpha: Option<Spanned<f64>>,
-        /// Exponent β.
-        beta: Option<Spanned<f64>>,
-        /// Energy E₀.
-        e0: Option<Placed<SpecificEnergy>>,
-        /// Energy of incipient vaporisation.
-        e_iv: Option<Placed<SpecificEnergy>>,
-        /// Energy of complete vaporisation.
-        e_cv: Option<Placed<SpecificEnergy>>,
-    }
-
-    /// `eos.ideal_gas`
-    IdealGasParams {
-        /// Ratio of specific heats.
-        gamma: Option<Spanned<f64>>,
-        /// Stiffening pressure; 0 if absent.
-        stiffening_pressure: Option<Placed<Pressure>>,
-        /// Pressure of the reference state; 0 if absent.
-        reference_pressure: Option<Placed<Pressure>>,
+        thermal: Option<Spanned<ThermalParams>>;
     }
 
     /// `thermal`
     ThermalParams {
         /// Specific heat.
-        specific_heat: Option<Placed<SpecificHeat>>,
-        /// Temperature of the reference state; 300 K if absent.
-        reference_temperature: Option<Placed<Temperature>>,
+        specific_heat: Option<Placed<SpecificHeat>>, Positive;
+        /// Temperature of the reference state.
+        reference_temperature: Option<Placed<Temperature>> = "300 K", NotNegative => or "that of the library";
         /// Melting temperature.
-        melting_temperature: Option<Placed<Temperature>>,
-        /// Share of plastic work that becomes heat; 1 if absent.
-        taylor_quinney: Option<Spanned<f64>>,
+        melting_temperature: Option<Placed<Temperature>>, Positive;
+        /// Share of plastic work that becomes heat.
+        taylor_quinney: Option<Spanned<f64>> = 1.0, Within(0.0, 1.0) => or "that of the library";
     }
 }
 
-/// Passes the laws of strength to the macro `$then`: key, table, the law that it makes, and keys
-/// and values of its constants, with their range and what they are if neither the table nor the
-/// library says. A shear modulus may be that of the library's law, whichever that is.
+/// Passes the equations of state to the macro `$then`: key, table, the law that it makes, and keys and values of its
+/// constants, each as a row of [a table](super::declare) that need not be there: what it has not is that of the
+/// library's law of the same kind, then that of the row. After `or` stands a key in place of one of the constants, and
+/// what makes the law of it, from the other constants and the reference density.
+macro_rules! equations_of_state {
+    ($then:ident) => {
+        $then! {
+            /// `eos.linear`: linear.
+            linear: LinearParams => Linear {
+                /// Bulk modulus.
+                bulk_modulus: Placed<Pressure>, Positive;
+                /// Dependence on the density ratio.
+                form: Spanned<LinearForm> = LinearForm::Logarithmic;
+            }
+            /// `eos.mie_gruneisen`: Mie–Grüneisen.
+            mie_gruneisen: MieGruneisenParams => MieGruneisen {
+                /// Bulk sound speed.
+                c0: Placed<Velocity>, Positive;
+                /// Hugoniot.
+                s1: Spanned<f64>, NotNegative;
+                /// Hugoniot.
+                s2: Spanned<f64> = 0.0, Any;
+                /// Hugoniot.
+                s3: Spanned<f64> = 0.0, Any;
+                /// Grüneisen parameter.
+                gamma0: Spanned<f64>, NotNegative;
+                /// Its linear coefficient.
+                b: Spanned<f64> = 0.0, Any;
+            }
+            /// `eos.tait`: Tait.
+            tait: TaitParams => Tait {
+                /// Coefficient B; or the sound speed.
+                b: Placed<Pressure>, Positive;
+                /// Exponent.
+                gamma: Spanned<f64> = 7.0, Positive;
+            } or {
+                /// Sound speed of the reference state.
+                sound_speed: Placed<Velocity>, Positive
+                    => b: |law: &Tait, rho0, c0| Tait::with_sound_speed(rho0, c0, law.gamma);
+            }
+            /// `eos.tillotson`: Tillotson.
+            tillotson: TillotsonParams => Tillotson {
+                /// Coefficient a.
+                a: Spanned<f64>, Positive;
+                /// Coefficient b.
+                b: Spanned<f64>, NotNegative;
+                /// Bulk modulus A.
+                bulk_modulus: Placed<Pressure>, Positive;
+                /// Coefficient B.
+                quadratic_modulus: Placed<Pressure>, NotNegative;
+                /// Exponent α.
+                alpha: Spanned<f64>, NotNegative;
+                /// Exponent β.
+                beta: Spanned<f64>, NotNegative;
+                /// Energy E₀.
+                e0: Placed<SpecificEnergy>, Positive;
+                /// Energy of incipient vaporisation.
+                e_iv: Placed<SpecificEnergy>, Positive;
+                /// Energy of complete vaporisation.
+                e_cv: Placed<SpecificEnergy>, Positive;
+            }
+            /// `eos.ideal_gas`: ideal or stiffened gas.
+            ideal_gas: IdealGasParams => IdealGas {
+                /// Ratio of specific heats.
+                gamma: Spanned<f64>, AboveOne;
+                /// Stiffening pressure.
+                stiffening_pressure: Placed<Pressure> = "0", NotNegative;
+                /// Pressure of the reference state.
+                reference_pressure: Placed<Pressure> = "0", NotNegative;
+            }
+        }
+    };
+}
+pub(in crate::input) use equations_of_state;
+
+/// Passes the laws of strength to the macro `$then`, in the same form. A shear modulus may be that of the library's
+/// law, whichever that is.
 macro_rules! strength_laws {
     ($then:ident) => {
         $then! {
@@ -147,8 +141,8 @@ macro_rules! strength_laws {
                 shear_modulus: Placed<Pressure>, Positive;
                 /// Yield stress.
                 yield_stress: Placed<Pressure>, NotNegative;
-                /// Hardening modulus; 0 if absent.
-                hardening_modulus: Placed<Pressure>, NotNegative, or 0.0;
+                /// Hardening modulus.
+                hardening_modulus: Placed<Pressure> = "0", NotNegative;
             }
             /// `strength.johnson_cook`: Johnson and Cook.
             johnson_cook: JohnsonCookParams => JohnsonCook {
@@ -164,8 +158,8 @@ macro_rules! strength_laws {
                 c: Spanned<f64>, NotNegative;
                 /// Exponent of thermal softening.
                 m: Spanned<f64>, Positive;
-                /// Reference strain rate; 1/s if absent.
-                reference_rate: Placed<Rate>, Positive, or 1.0;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
             }
             /// `strength.steinberg_guinan`: Steinberg and Guinan.
             steinberg_guinan: SteinbergGuinanParams => SteinbergGuinan {
@@ -179,8 +173,8 @@ macro_rules! strength_laws {
                 beta: Spanned<f64>, NotNegative;
                 /// Hardening exponent.
                 n: Spanned<f64>, UpToOne;
-                /// Initial plastic strain; 0 if absent.
-                initial_strain: Spanned<f64>, NotNegative, or 0.0;
+                /// Initial plastic strain.
+                initial_strain: Spanned<f64> = 0.0, NotNegative;
                 /// G′p/G₀.
                 pressure_coefficient: Placed<PerPressure>, NotNegative;
                 /// −G′T/G₀.
@@ -197,8 +191,7 @@ macro_rules! strength_laws {
 }
 pub(in crate::input) use strength_laws;
 
-/// Passes the laws of failure to the macro `$then`, in the same form. A `Word` is a choice with a
-/// default of its own.
+/// Passes the laws of failure to the macro `$then`, in the same form.
 macro_rules! failure_laws {
     ($then:ident) => {
         $then! {
@@ -206,8 +199,8 @@ macro_rules! failure_laws {
             spall: SpallParams => Spall {
                 /// Lowest pressure.
                 pressure: Placed<Pressure>, NotPositive;
-                /// What becomes of matter beyond it; `"failed"` if absent.
-                after: Spanned<AfterSpall>, Word;
+                /// What becomes of matter beyond it.
+                after: Spanned<AfterSpall> = AfterSpall::Failed;
             }
             /// `failure.principal_stress`: largest principal stress.
             principal_stress: PrincipalStressParams => PrincipalStress {
@@ -227,18 +220,18 @@ macro_rules! failure_laws {
                 d2: Spanned<f64>, Any;
                 /// D₃.
                 d3: Spanned<f64>, Any;
-                /// D₄; 0 if absent.
-                d4: Spanned<f64>, Any, or 0.0;
-                /// D₅; 0 if absent.
-                d5: Spanned<f64>, Any, or 0.0;
-                /// Reference strain rate; 1/s if absent.
-                reference_rate: Placed<Rate>, Positive, or 1.0;
-                /// How the failure strain follows the rate; `"logarithm"` if absent.
-                rate_form: Spanned<RateForm>, Word;
-                /// Least failure strain; 0.01 if absent.
-                least_strain: Spanned<f64>, Positive, or 0.01;
-                /// Mean tension at which the least strain is enough; no such stress if absent.
-                spall_stress: Placed<Pressure>, NotNegative, or 0.0;
+                /// D₄.
+                d4: Spanned<f64> = 0.0, Any;
+                /// D₅.
+                d5: Spanned<f64> = 0.0, Any;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
+                /// How the failure strain follows the rate.
+                rate_form: Spanned<RateForm> = RateForm::Logarithm;
+                /// Least failure strain.
+                least_strain: Spanned<f64> = 0.01, Positive;
+                /// Mean tension at which the least strain is enough.
+                spall_stress: Placed<Pressure> = "0", NotNegative => "no such stress";
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {
@@ -246,39 +239,59 @@ macro_rules! failure_laws {
                 k: Placed<NumberDensity>, Positive;
                 /// Weibull's exponent.
                 m: Spanned<f64>, Positive;
-                /// Crack speed over the sound speed; 0.4 if absent.
-                crack_speed: Spanned<f64>, Positive, or 0.4;
-                /// What a crack crosses; `"particle"` if absent.
-                crosses: Spanned<Crosses>, Word;
-                /// How many flaws are active; `"drawn"` if absent.
-                flaws: Spanned<Flaws>, Word;
-                /// Flaws of a particle; no limit if absent.
-                most_flaws: Spanned<f64>, NotNegative, or 0.0;
+                /// Crack speed over the sound speed.
+                crack_speed: Spanned<f64> = 0.4, Positive;
+                /// What a crack crosses.
+                crosses: Spanned<Crosses> = Crosses::Particle;
+                /// How many flaws are active.
+                flaws: Spanned<Flaws> = Flaws::Drawn;
+                /// Flaws of a particle.
+                most_flaws: Spanned<f64> = 0.0, NotNegative => "no limit";
             }
         }
     };
 }
 pub(in crate::input) use failure_laws;
 
+/// Declares the tables of laws, and the one that has them all.
 macro_rules! law_tables {
     ($(
-        $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident {
-            $( $(#[doc = $key_doc:literal])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
+        $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $(
+            $(#[doc = $key_doc:literal])+ $key:ident: $typed:ty
+                $(= $value:expr)? $(, $allowed:ident)? $(=> $words:literal)?;
+        )+ } $(or {
+            $(#[doc = $way_doc:literal])+ $way:ident: $way_typed:ty, $way_allowed:ident => $of:ident: $make:expr;
+        })?
+    )+) => { $(
+        table! {
+            value_of_law true
+            #[derive(Debug, Default, Deserialize)] #[serde(default, deny_unknown_fields, remote = "Self")]
+            $(#[doc = $doc])+ $table {
+                $( $(#[doc = $key_doc])+ $key: Option<$typed> $(= $value)? $(, $allowed)? $(=> $words)?; )+
+                $( $(#[doc = $way_doc])+ $way: Option<$way_typed>; )?
+            }
         }
-    )+) => {
+    )+ };
+}
+equations_of_state!(law_tables);
+strength_laws!(law_tables);
+failure_laws!(law_tables);
+
+macro_rules! eos_table {
+    ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } $(or { $($way:tt)+ })? )+) => {
         optional_tables! {
-            $( $(#[doc = $doc])+ $table { $( $(#[doc = $key_doc])+ $key: Option<$value>, )+ } )+
+            /// `eos`: exactly one of these.
+            EosParams { $( $(#[doc = $doc])+ $law: Option<$table>; )+ }
         }
     };
 }
-strength_laws!(law_tables);
-failure_laws!(law_tables);
+equations_of_state!(eos_table);
 
 macro_rules! strength_table {
     ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
         optional_tables! {
             /// `strength`: exactly one of these.
-            StrengthParams { $( $(#[doc = $doc])+ $law: Option<$table>, )+ }
+            StrengthParams { $( $(#[doc = $doc])+ $law: Option<$table>; )+ }
         }
     };
 }
@@ -289,17 +302,17 @@ macro_rules! failure_table {
         optional_tables! {
             /// `failure`: any of these laws, and what they have in common.
             FailureParams {
-                $( $(#[doc = $doc])+ $law: Option<Spanned<OrNone<$table>>>, )+
+                $( $(#[doc = $doc])+ $law: Option<Spanned<OrNone<$table>>>; )+
                 /// What failed matter has lost.
-                effect: Option<Spanned<Effect>>,
+                effect: Option<Spanned<Effect>>;
                 /// Energy that opens a crack.
-                fracture_energy: Option<Placed<FractureEnergy>>,
+                fracture_energy: Option<Placed<FractureEnergy>>, NotNegative;
                 /// Weibull modulus of failure strains.
-                scatter: Option<Spanned<f64>>,
+                scatter: Option<Spanned<f64>>, NotNegative;
                 /// Of draws.
-                seed: Option<Spanned<u32>>,
+                seed: Option<Spanned<u32>>;
                 /// What molten matter does.
-                molten: Option<Spanned<Molten>>,
+                molten: Option<Spanned<Molten>>;
             }
         }
     };

@@ -11,131 +11,131 @@ use crate::model::Include;
 tables! {
     /// `[[gauge]]`
     GaugeParams {
-        /// Name in tables, as of a body; `gauge-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables, as of a body.
+        name: Option<Spanned<String>> => "`gauge-1` and so on";
         /// Where it is, or begins.
-        at: Spanned<Vec<Placed<Length>>>,
-        /// Whether the particle nearest at the start carries it, in place of being fixed in space; `false` if absent.
-        moves: Option<bool>,
-        /// Name of the body whose matter it reads; all that deform if absent.
-        body: Option<Spanned<String>>,
-        /// Names of what it reads; pressure, density and velocity if absent.
-        fields: Option<Spanned<Vec<Spanned<String>>>>,
-        /// Direction of the normal stress that it reads; none if absent.
-        along: Option<Spanned<NormalParams>>,
+        at: Spanned<Vec<Placed<Length>>>;
+        /// Whether the particle nearest at the start carries it, in place of being fixed in space.
+        moves: Option<bool> = false;
+        /// Name of the body whose matter it reads.
+        body: Option<Spanned<String>> => "all that deform";
+        /// Names of what it reads.
+        fields: Option<Spanned<Vec<Spanned<String>>>> => "pressure, density and velocity";
+        /// Direction of the normal stress that it reads.
+        along: Option<Spanned<NormalParams>> => "none";
         /// Time between readings.
-        every: Option<Placed<Time>>,
-        /// Steps between readings; each step, without a time, if absent.
-        every_steps: Option<Spanned<i64>>,
+        every: Option<Placed<Time>>, Positive;
+        /// Steps between readings.
+        every_steps: Option<Spanned<i64>>, AtLeast(1) => "each step, without a time";
     }
 
     /// `[[witness]]`
     WitnessParams {
-        /// Name in tables, as of a body; `witness-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables, as of a body.
+        name: Option<Spanned<String>> => "`witness-1` and so on";
         /// To the side to which matter passes forwards.
-        normal: Spanned<NormalParams>,
-        /// A point of the plane; the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
+        normal: Spanned<NormalParams>;
+        /// A point of the plane.
+        point: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
     }
 }
 
 tables! {
     /// `[[measure.plate]]` and `[[measure.target]]`
     SlabParams {
-        /// Name in tables; that of the body if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables.
+        name: Option<Spanned<String>> => "that of the body";
         /// Name of the body.
-        body: Spanned<String>,
-        /// Direction out of the face that is struck; told by what moves towards it if absent.
-        normal: Option<Spanned<NormalParams>>,
-        /// What can remain of it; of a plate what is intact, of a target all if absent.
-        include: Option<Include>,
+        body: Spanned<String>;
+        /// Direction out of the face that is struck.
+        normal: Option<Spanned<NormalParams>> => "told by what moves towards it";
+        /// What can remain of it.
+        include: Option<Include> => "of a plate what is intact, of a target all";
     }
 
     /// `[[measure.bar]]`
     BarParams {
-        /// Name in tables; that of the body if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables.
+        name: Option<Spanned<String>> => "that of the body";
         /// Name of the body.
-        body: Spanned<String>,
-        /// Direction to its foot; told by how it moves if absent.
-        foot: Option<Spanned<NormalParams>>,
+        body: Spanned<String>;
+        /// Direction to its foot.
+        foot: Option<Spanned<NormalParams>> => "told by how it moves";
     }
 
     /// `[[measure.debris]]`
     DebrisParams {
-        /// Name in tables; `debris-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables.
+        name: Option<Spanned<String>> => "`debris-1` and so on";
         /// Name of the plate or target that it leaves; what remains of that is no debris.
-        of: Option<Spanned<String>>,
+        of: Option<Spanned<String>>;
         /// Direction of flight.
-        direction: Spanned<NormalParams>,
-        /// A point of the plane beyond which it is; on that plate, else the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Names of the bodies whose matter it may be; all that deform if absent.
-        bodies: Option<Spanned<Vec<Spanned<String>>>>,
-        /// Areal mass of the outline; 2 % of the plate's, else half a layer of particles if absent.
-        outline: Option<Placed<ArealMass>>,
+        direction: Spanned<NormalParams>;
+        /// A point of the plane beyond which it is.
+        point: Option<Spanned<Vec<Placed<Length>>>> => "on that plate, else the origin";
+        /// Names of the bodies whose matter it may be.
+        bodies: Option<Spanned<Vec<Spanned<String>>>> => "all that deform";
+        /// Areal mass of the outline.
+        outline: Option<Placed<ArealMass>>, Positive => "2 % of the plate's, else half a layer of particles";
     }
 
     /// `[[measure.region]]`
     ZoneParams {
-        /// Name in tables; `region-1` and so on if absent.
-        name: Option<Spanned<String>>,
-        /// Smallest coordinates; open if absent.
-        above: Option<Spanned<SidesParams>>,
-        /// Largest coordinates; open if absent.
-        below: Option<Spanned<SidesParams>>,
+        /// Name in tables.
+        name: Option<Spanned<String>> => "`region-1` and so on";
+        /// Smallest coordinates.
+        above: Option<Spanned<SidesParams>> => "open";
+        /// Largest coordinates.
+        below: Option<Spanned<SidesParams>> => "open";
         /// Centre of a ball, in place of sides.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        centre: Option<Spanned<Vec<Placed<Length>>>>;
         /// Radius of the ball.
-        radius: Option<Placed<Length>>,
-        /// Whether it is what begins there and moves, in place of being fixed in space; `false` if absent.
-        moves: Option<bool>,
-        /// Name of the body whose matter it reads; all that deform if absent.
-        body: Option<Spanned<String>>,
-        /// Names of what it reads; pressure, density and velocity if absent.
-        fields: Option<Spanned<Vec<Spanned<String>>>>,
+        radius: Option<Placed<Length>>, Positive;
+        /// Whether it is what begins there and moves, in place of being fixed in space.
+        moves: Option<bool> = false;
+        /// Name of the body whose matter it reads.
+        body: Option<Spanned<String>> => "all that deform";
+        /// Names of what it reads.
+        fields: Option<Spanned<Vec<Spanned<String>>>> => "pressure, density and velocity";
     }
 
     /// `[[measure.front]]`
     FrontParams {
-        /// Name in tables; `front-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in tables.
+        name: Option<Spanned<String>> => "`front-1` and so on";
         /// Where the line begins.
-        from: Spanned<Vec<Placed<Length>>>,
+        from: Spanned<Vec<Placed<Length>>>;
         /// Where it ends.
-        to: Spanned<Vec<Placed<Length>>>,
-        /// How far from the line matter counts; 1.5 spacings if absent.
-        radius: Option<Placed<Length>>,
-        /// Pressure of the front; half the largest on the line if absent.
-        pressure: Option<Placed<Pressure>>,
+        to: Spanned<Vec<Placed<Length>>>;
+        /// How far from the line matter counts.
+        radius: Option<Placed<Length>>, Positive => "1.5 spacings";
+        /// Pressure of the front.
+        pressure: Option<Placed<Pressure>>, Positive => "half the largest on the line";
     }
 }
 
 optional_tables! {
     /// `[measure]`
     MeasureParams {
-        /// Whether `bodies.csv` is written; `true` if absent.
-        bodies: Option<bool>,
-        /// Whether plates, targets and bars are found by their shapes; `true` if absent.
-        usual: Option<bool>,
-        /// Time between rows of `measures.csv`; a tenth of the run if absent.
-        every: Option<Placed<Time>>,
+        /// Whether `bodies.csv` is written.
+        bodies: Option<bool> = true;
+        /// Whether plates, targets and bars are found by their shapes.
+        usual: Option<bool> = true;
+        /// Time between rows of `measures.csv`.
+        every: Option<Placed<Time>>, Positive => "a tenth of the run";
         /// Plates.
-        plate: Vec<Spanned<SlabParams>>,
+        plate: Vec<Spanned<SlabParams>>;
         /// Targets.
-        target: Vec<Spanned<SlabParams>>,
+        target: Vec<Spanned<SlabParams>>;
         /// Bars.
-        bar: Vec<Spanned<BarParams>>,
+        bar: Vec<Spanned<BarParams>>;
         /// Debris.
-        debris: Vec<Spanned<DebrisParams>>,
+        debris: Vec<Spanned<DebrisParams>>;
         /// Regions.
-        region: Vec<Spanned<ZoneParams>>,
+        region: Vec<Spanned<ZoneParams>>;
         /// Fronts.
-        front: Vec<Spanned<FrontParams>>,
-        /// Pressure that counts as the arrival of a shock; that of each material if absent.
-        arrival_pressure: Option<Placed<Pressure>>,
+        front: Vec<Spanned<FrontParams>>;
+        /// Pressure that counts as the arrival of a shock.
+        arrival_pressure: Option<Placed<Pressure>>, Positive => "that of each material";
     }
 }

@@ -9,19 +9,20 @@ use crate::model::NumericalFailurePolicy;
 optional_tables! {
     /// `[numerical_limits]`
     NumericalLimitsParams {
-        /// What happens to a particle whose state is out of range; `"stop"` if absent.
-        policy: Option<NumericalFailurePolicy>,
-        /// Largest speed; 20 times the case's own speeds if absent.
-        speed_max: Option<Placed<Velocity>>,
-        /// Largest magnitude of the specific energy; half the square of the largest speed if absent.
-        energy_max: Option<Placed<SpecificEnergy>>,
-        /// Smallest density over that at the start; `1e-6` if absent.
-        density_min: Option<Spanned<f64>>,
-        /// Largest density over that at the start; `100` if absent.
-        density_max: Option<Spanned<f64>>,
-        /// Smallest time step; a millionth of the shortest h over the case's own speeds if absent.
-        step_min: Option<Placed<Time>>,
-        /// Largest kinetic energy over what there was and has been put in; `10` if absent.
-        gain_max: Option<Spanned<f64>>,
+        /// What happens to a particle whose state is out of range.
+        policy: Option<NumericalFailurePolicy> = NumericalFailurePolicy::Stop;
+        /// Largest speed.
+        speed_max: Option<Placed<Velocity>>, Positive => "20 times the case's own speeds";
+        /// Largest magnitude of the specific energy.
+        energy_max: Option<Placed<SpecificEnergy>>, Positive => "half the square of the largest speed";
+        /// Smallest density over that at the start.
+        density_min: Option<Spanned<f64>> = 1e-6, Within(0.0, 1.0);
+        /// Largest density over that at the start.
+        density_max: Option<Spanned<f64>> = 100.0, AboveOne;
+        /// Smallest time step.
+        step_min: Option<Placed<Time>>, NotNegative => "a millionth of the shortest h over the case's own speeds";
+        // A sound run never reaches one.
+        /// Largest kinetic energy over what there was and has been put in.
+        gain_max: Option<Spanned<f64>> = 10.0, AboveOne;
     }
 }

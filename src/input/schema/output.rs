@@ -14,28 +14,29 @@ use crate::model::Precision;
 optional_tables! {
     /// `[output]`
     OutputParams {
-        /// Time between snapshots; the first and the last state alone if absent.
-        snapshot_every: Option<Placed<Time>>,
-        /// Time between checkpoints; the last one alone if absent.
-        checkpoint_every: Option<Placed<Time>>,
-        /// Steps between checkpoints; none by steps if absent.
-        checkpoint_every_steps: Option<Spanned<i64>>,
-        /// Time of the clock between checkpoints; none by the clock if absent.
-        checkpoint_every_wall: Option<Spanned<ClockParams>>,
-        /// Mean time between failures of the machine, for `"auto"`; 6 h if absent.
-        mean_time_between_failures: Option<Placed<Time>>,
-        /// How many are kept; `2` if absent.
-        checkpoints_kept: Option<Spanned<i64>>,
-        /// Steps, or time, between rows of the histories; 250 rows a run if absent.
-        history_every: Option<Spanned<CadenceParams>>,
-        /// Snapshot fields, at least one; the usual ones if absent.
-        fields: Option<Spanned<Vec<Spanned<String>>>>,
-        /// How many ranks write; all if absent.
-        writers: Option<Spanned<i64>>,
-        /// Arrays begin at multiples of so many bytes; anywhere if absent.
-        alignment: Option<Spanned<i64>>,
+        /// Time between snapshots.
+        snapshot_every: Option<Placed<Time>>, Positive => "the first and the last state alone";
+        /// Time between checkpoints.
+        checkpoint_every: Option<Placed<Time>>, Positive => "the last one alone";
+        /// Steps between checkpoints.
+        checkpoint_every_steps: Option<Spanned<i64>>, AtLeast(1) => "none by steps";
+        /// Time of the clock between checkpoints.
+        checkpoint_every_wall: Option<Spanned<ClockParams>> => "none by the clock";
+        // If nothing is known of the machine, that of some thousand nodes.
+        /// Mean time between failures of the machine, for `"auto"`.
+        mean_time_between_failures: Option<Placed<Time>> = "6 h", Positive;
+        /// How many are kept.
+        checkpoints_kept: Option<Spanned<i64>> = 2, AtLeast(1);
+        /// Steps, or time, between rows of the histories.
+        history_every: Option<Spanned<CadenceParams>> => "250 rows a run";
+        /// Snapshot fields, at least one.
+        fields: Option<Spanned<Vec<Spanned<String>>>> => "the usual ones";
+        /// How many ranks write.
+        writers: Option<Spanned<i64>>, AtLeast(1) => "all";
+        /// Arrays begin at multiples of so many bytes.
+        alignment: Option<Spanned<i64>>, AtLeast(1) => "anywhere";
         /// Snapshots with schedules of their own.
-        snapshot: Vec<Spanned<SnapshotParams>>,
+        snapshot: Vec<Spanned<SnapshotParams>>;
     }
 }
 
@@ -43,17 +44,17 @@ tables! {
     /// `[[output.snapshot]]`
     SnapshotParams {
         /// Name of its folder, as of a body but without dots.
-        name: Spanned<String>,
-        /// Time between snapshots; the first and the last state alone if absent.
-        every: Option<Placed<Time>>,
-        /// Fields, at least one; those of the usual snapshots if absent.
-        fields: Option<Spanned<Vec<Spanned<String>>>>,
-        /// Names of the bodies whose particles it holds; all if absent.
-        bodies: Option<Spanned<Vec<Spanned<String>>>>,
-        /// What of space it holds; all if absent.
-        region: Option<Spanned<KeepParams>>,
-        /// Whether numbers have 64 bits or 32; `"double"` if absent.
-        precision: Option<Precision>,
+        name: Spanned<String>;
+        /// Time between snapshots.
+        every: Option<Placed<Time>>, Positive => "the first and the last state alone";
+        /// Fields, at least one.
+        fields: Option<Spanned<Vec<Spanned<String>>>> => "those of the usual snapshots";
+        /// Names of the bodies whose particles it holds.
+        bodies: Option<Spanned<Vec<Spanned<String>>>> => "all";
+        /// What of space it holds.
+        region: Option<Spanned<KeepParams>> => "all";
+        /// Whether numbers have 64 bits or 32.
+        precision: Option<Precision> = Precision::Double;
     }
 }
 

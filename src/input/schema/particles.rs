@@ -10,27 +10,27 @@ tables! {
     /// `particles`
     ParticlesParams {
         /// Path, from the folder of the case.
-        file: Spanned<String>,
-        /// What is in it; told by its ending if absent.
-        format: Option<Spanned<FormatName>>,
-        /// Names or numbers of its parts that the body is of; the only one if absent.
-        part: Option<Spanned<PartsParams>>,
-        /// What of a mesh becomes particles; `"elements"` if absent.
-        take: Option<Spanned<TakeName>>,
+        file: Spanned<String>;
+        /// What is in it.
+        format: Option<Spanned<FormatName>> => "told by its ending";
+        /// Names or numbers of its parts that the body is of.
+        part: Option<Spanned<PartsParams>> => "the only one";
+        /// What of a mesh becomes particles.
+        take: Option<Spanned<TakeName>> = TakeName::Elements;
         /// Length of one unit of the file.
-        unit: Option<Placed<Length>>,
+        unit: Option<Placed<Length>>, Positive;
         /// Mass of one unit of the file.
-        mass_unit: Option<Placed<Mass>>,
+        mass_unit: Option<Placed<Mass>>, Positive;
         /// Time of one unit of the file.
-        time_unit: Option<Placed<Time>>,
+        time_unit: Option<Placed<Time>>, Positive;
         /// What the file calls its columns or arrays.
-        columns: Option<Spanned<ColumnsParams>>,
-        /// Turns them; none if absent.
-        turn: Option<Spanned<TurnsParams>>,
-        /// Moves them, once they are turned; none if absent.
-        shift: Option<Point>,
+        columns: Option<Spanned<ColumnsParams>>;
+        /// Turns them.
+        turn: Option<Spanned<TurnsParams>> => "none";
+        /// Moves them, once they are turned.
+        shift: Option<Point> => "none";
         /// SHA-256 that the file must have.
-        sha256: Option<Spanned<String>>,
+        sha256: Option<Spanned<String>>;
     }
 }
 
@@ -38,27 +38,27 @@ optional_tables! {
     /// `particles.columns`
     ColumnsParams {
         /// Of places.
-        position: Option<Spanned<NamesParams>>,
+        position: Option<Spanned<NamesParams>>;
         /// Of masses.
-        mass: Option<Spanned<NamesParams>>,
+        mass: Option<Spanned<NamesParams>>;
         /// Of volumes.
-        volume: Option<Spanned<NamesParams>>,
+        volume: Option<Spanned<NamesParams>>;
         /// Of densities.
-        density: Option<Spanned<NamesParams>>,
+        density: Option<Spanned<NamesParams>>;
         /// Of velocities.
-        velocity: Option<Spanned<NamesParams>>,
+        velocity: Option<Spanned<NamesParams>>;
         /// Of specific energies.
-        specific_energy: Option<Spanned<NamesParams>>,
+        specific_energy: Option<Spanned<NamesParams>>;
         /// Of temperatures.
-        temperature: Option<Spanned<NamesParams>>,
+        temperature: Option<Spanned<NamesParams>>;
         /// Of deviatoric stresses.
-        deviatoric_stress: Option<Spanned<NamesParams>>,
+        deviatoric_stress: Option<Spanned<NamesParams>>;
         /// Of plastic strains.
-        plastic_strain: Option<Spanned<NamesParams>>,
+        plastic_strain: Option<Spanned<NamesParams>>;
         /// Of damages.
-        damage: Option<Spanned<NamesParams>>,
+        damage: Option<Spanned<NamesParams>>;
         /// Of names or numbers of parts.
-        part: Option<Spanned<NamesParams>>,
+        part: Option<Spanned<NamesParams>>;
     }
 }
 

@@ -16,59 +16,59 @@ tables! {
     /// `lattice` as a table.
     LatticeTable {
         /// Kind of stacking.
-        kind: Spanned<LatticeKind>,
+        kind: Spanned<LatticeKind>;
         /// Turn of a lattice with an order.
-        angle: Option<Placed<Angle>>,
-        /// About which it is turned; z if absent.
-        axis: Option<Spanned<AxisParams>>,
-        /// Whether the lattice is stretched to fill a box; false if absent.
-        fit: Option<Spanned<bool>>,
-        /// Which glass; 0 if absent.
-        seed: Option<Spanned<i64>>,
+        angle: Option<Placed<Angle>>;
+        /// About which it is turned.
+        axis: Option<Spanned<AxisParams>> => "z";
+        /// Whether the lattice is stretched to fill a box.
+        fit: Option<Spanned<bool>> = false;
+        /// Which glass.
+        seed: Option<Spanned<i64>> => "0";
     }
 
     /// `spacing` as a table.
     SpacingTable {
         /// The finest spacing.
-        inner: Placed<Length>,
+        inner: Placed<Length>, Positive;
         /// The coarsest spacing.
-        outer: Placed<Length>,
-        /// How many times as thick a layer is as the one before it; 1.1 if absent.
-        ratio: Option<Spanned<f64>>,
+        outer: Placed<Length>, Positive;
+        /// How many times as thick a layer is as the one before it.
+        ratio: Option<Spanned<f64>> = 1.1;
         /// Where the body is finest, or a point of the line along which it is.
-        at: Option<Point>,
+        at: Option<Point>;
         /// Direction of that line.
-        axis: Option<Spanned<AxisParams>>,
+        axis: Option<Spanned<AxisParams>>;
         /// The side of the body at which it is finest, in place of `at`.
-        face: Option<Spanned<NormalParams>>,
-        /// How far from there the spacing stays the finest; nowhere if absent.
-        within: Option<Spanned<Extent>>,
+        face: Option<Spanned<NormalParams>>;
+        /// How far from there the spacing stays the finest.
+        within: Option<Spanned<Extent>> => "nowhere";
     }
 
     /// `round` as a table.
     RoundTable {
-        /// A point of the axis, or what the face is about; the origin if absent.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Axis of a cylinder; a sphere if absent.
-        axis: Option<Spanned<Axis>>,
+        /// A point of the axis, or what the face is about.
+        centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
+        /// Axis of a cylinder.
+        axis: Option<Spanned<Axis>> => "a sphere";
         /// Radius.
-        radius: Placed<Length>,
+        radius: Placed<Length>, Positive;
     }
 
     /// `angular_velocity` as a table.
     AngularVelocityTable {
         /// About x, y and z; in two dimensions about z.
-        rate: Spanned<Vec<Placed<AngularRate>>>,
+        rate: Spanned<Vec<Placed<AngularRate>>>;
         /// A point that it turns about.
-        about: Point,
+        about: Point;
     }
 
     /// `friction` as a table.
     FrictionTable {
         /// Of faces that stick.
-        r#static: Spanned<f64>,
+        r#static: Spanned<f64>, NotNegative;
         /// Of faces that slide.
-        kinetic: Spanned<f64>,
+        kinetic: Spanned<f64>, NotNegative;
     }
 }
 
@@ -76,7 +76,7 @@ optional_tables! {
     /// `contact.self_contact` as a table.
     SelfContactTable {
         /// Spacings between the beginnings of particles that can fold onto each other.
-        folds: Option<Spanned<f64>>,
+        folds: Option<Spanned<f64>>, Positive;
     }
 }
 

@@ -13,109 +13,111 @@ use crate::model::Axis;
 tables! {
     /// `[[plane]]`
     PlaneParams {
-        /// Name in reports, as of a body; `plane-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in reports, as of a body.
+        name: Option<Spanned<String>> => "`plane-1` and so on";
         /// To the side that the plane keeps.
-        normal: Spanned<NormalParams>,
-        /// A point of the plane; the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Names of the bodies that feel it; all if absent.
-        bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ; 2 if absent.
-        stiffness: Option<Spanned<f64>>,
-        /// Coefficients of friction; 0 if absent.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping; 0 if absent.
-        damping: Option<Spanned<f64>>,
-        /// Motion of the plane; fixed if absent.
-        motion: Option<Spanned<MotionParams>>,
+        normal: Spanned<NormalParams>;
+        /// A point of the plane.
+        point: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
+        /// Names of the bodies that feel it.
+        bodies: Option<Vec<Spanned<String>>> => "all";
+        // Of a half spacing of material before the surface.
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>> = 2.0, Positive;
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>> = 0.0, NotNegative;
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
+        /// Motion of the plane.
+        motion: Option<Spanned<MotionParams>> => "fixed";
     }
 
     /// `[[surface]]`
     SurfaceParams {
-        /// Name in reports, as of a body; `surface-1` and so on if absent.
-        name: Option<Spanned<String>>,
+        /// Name in reports, as of a body.
+        name: Option<Spanned<String>> => "`surface-1` and so on";
         /// Geometry.
-        shape: Spanned<SurfaceShapeParams>,
-        /// Where the particles are; `"outside"` if absent.
-        side: Option<SideName>,
-        /// Names of the bodies that feel it; all if absent.
-        bodies: Option<Vec<Spanned<String>>>,
-        /// Stiffness κ; 2 if absent.
-        stiffness: Option<Spanned<f64>>,
-        /// Coefficients of friction; 0 if absent.
-        friction: Option<Spanned<FrictionParams>>,
-        /// Share of critical damping; 0 if absent.
-        damping: Option<Spanned<f64>>,
-        /// Motion of the surface; fixed if absent.
-        motion: Option<Spanned<MotionParams>>,
-        /// Rotation of the surface; none if absent.
-        rotation: Option<Spanned<RotationParams>>,
+        shape: Spanned<SurfaceShapeParams>;
+        /// Where the particles are.
+        side: Option<SideName> = SideName::Outside;
+        /// Names of the bodies that feel it.
+        bodies: Option<Vec<Spanned<String>>> => "all";
+        // Of a half spacing of material before the surface.
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>> = 2.0, Positive;
+        /// Coefficients of friction.
+        friction: Option<Spanned<FrictionParams>> = 0.0, NotNegative;
+        /// Share of critical damping.
+        damping: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
+        /// Motion of the surface.
+        motion: Option<Spanned<MotionParams>> => "fixed";
+        /// Rotation of the surface.
+        rotation: Option<Spanned<RotationParams>> => "none";
     }
 
     /// `shape` of a surface: exactly one of these.
     SurfaceShapeParams {
         /// Ball; a disc in two dimensions.
-        sphere: Option<SurfaceSphereParams>,
+        sphere: Option<SurfaceSphereParams>;
         /// Circular cylinder.
-        cylinder: Option<SurfaceCylinderParams>,
+        cylinder: Option<SurfaceCylinderParams>;
         /// Triangles from an STL file.
-        stl: Option<Spanned<MeshFileParams>>,
+        stl: Option<Spanned<MeshFileParams>>;
         /// Triangles and polygons from an OBJ file.
-        obj: Option<Spanned<MeshFileParams>>,
+        obj: Option<Spanned<MeshFileParams>>;
     }
 
     /// `shape.sphere` of a surface.
     SurfaceSphereParams {
-        /// Centre; the origin if absent.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
+        /// Centre.
+        centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
         /// Radius.
-        radius: Placed<Length>,
+        radius: Placed<Length>, Positive;
     }
 
     /// `shape.cylinder` of a surface.
     SurfaceCylinderParams {
-        /// Middle of the axis; the origin if absent.
-        centre: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Direction of the axis; z if absent.
-        axis: Option<Spanned<Axis>>,
+        /// Middle of the axis.
+        centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
+        /// Direction of the axis.
+        axis: Option<Spanned<Axis>> => "z";
         /// Radius.
-        radius: Placed<Length>,
-        /// Length along the axis; without ends if absent.
-        length: Option<Placed<Length>>,
+        radius: Placed<Length>, Positive;
+        /// Length along the axis.
+        length: Option<Placed<Length>>, Positive => "without ends";
     }
 
     /// `shape.stl`, `shape.obj`, of surfaces and of bodies.
     MeshFileParams {
         /// Path, from the folder of the case.
-        file: Spanned<String>,
+        file: Spanned<String>;
         /// Length of one unit of the file.
-        unit: Placed<Length>,
-        /// Where the file's origin stands; the origin if absent.
-        at: Option<Spanned<Vec<Placed<Length>>>>,
-        /// Turns the surface about the file's origin, before it is placed; none if absent.
-        turn: Option<TurnParams>,
+        unit: Placed<Length>, Positive;
+        /// Where the file's origin stands.
+        at: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
+        /// Turns the surface about the file's origin, before it is placed.
+        turn: Option<TurnParams> => "none";
         /// SHA-256 that the file must have.
-        sha256: Option<Spanned<String>>,
+        sha256: Option<Spanned<String>>;
     }
 
     /// `turn`
     TurnParams {
         /// Axis through the origin.
-        axis: Spanned<Axis>,
+        axis: Spanned<Axis>;
         /// By how much.
-        angle: Placed<Angle>,
+        angle: Placed<Angle>;
     }
 
     /// `rotation`
     RotationParams {
         /// Axis of the rotation.
-        axis: Spanned<Axis>,
-        /// A point of the axis; the origin if absent.
-        point: Option<Spanned<Vec<Placed<Length>>>>,
+        axis: Spanned<Axis>;
+        /// A point of the axis.
+        point: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
         /// Times of the table.
-        times: Option<Spanned<Vec<Placed<Time>>>>,
+        times: Option<Spanned<Vec<Placed<Time>>>>;
         /// Rate, right-handed about the axis.
-        rate: Spanned<OneOrMany<AngularRate>>,
+        rate: Spanned<OneOrMany<AngularRate>>;
     }
 }

@@ -2,7 +2,6 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use super::loads::given_name;
 use super::shapes::vector;
 use super::surfaces::unit_vector;
@@ -184,7 +183,7 @@ impl Reader<'_> {
             axis => axis.as_ref().map(|name| *name.get_ref()),
         };
         let centre = vector("centre", table.centre.as_ref(), self.case.dimension)?;
-        let radius = number(Some(&table.radius), "radius", 0.0, Allowed::Positive)?;
+        let radius = table.radius()?;
         Ok((centre.into(), axis, radius))
     }
 

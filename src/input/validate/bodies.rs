@@ -4,7 +4,6 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::check::{Allowed, optional};
 use super::grading::{finest, graded, grading};
 use super::initial;
 use super::lattice::lattice;
@@ -13,8 +12,7 @@ use super::particles::{self, Files};
 use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
-use crate::input::quantity::{Length, Placed};
-use crate::input::schema::{AngularVelocityParams, BodyParams, ShapeParams};
+use crate::input::schema::{AngularVelocityParams, BodyParams, CaseParams, ShapeParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Failure, Linear, LinearForm, Material, Strength};
 use crate::model::{
@@ -50,8 +48,8 @@ type Moves = (Vec3, Option<Motion>, Option<[Profile; 3]>);
 /// What all bodies share.
 pub struct Reader<'a> {
     pub dimension: usize,
-    /// Spacing of bodies that set none.
-    pub spacing: Option<&'a Placed<Length>>,
+    /// The case, whose spacing is that of bodies that set none.
+    pub case: &'a CaseParams,
     pub materials: &'a [String],
     /// The materials themselves.
     pub known: &'a [Material],
@@ -104,7 +102,7 @@ impl Reader<'_> {
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
         let (velocity, rigid, varied) = self.motion(params)?;
-        let density = optional(params.density.as_ref(), "density", Allowed::Positive)?;
+        let density = params.density()?;
         let (shape, lattice) = self.form(params, material, table)?;
         let mut body = Body {
             name: name.clone(),
@@ -132,7 +130,7 @@ impl Reader<'_> {
         table: &Spanned<BodyParams>,
     ) -> Result<(Shape, Lattice), Diagnostic> {
         let own = params.spacing.as_ref().map(finest).transpose()?;
-        let of_case = optional(self.spacing, "spacing", Allowed::Positive)?;
+        let of_case = self.case.spacing()?;
         let spacing = own.or(of_case);
         match (&params.shape, &params.particles) {
             (Some(shape), None) => {
@@ -285,7 +283,7 @@ impl Reader<'_> {
             let sites = populate::most_sites(body, self.dimension);
             if sites > MOST_SITES {
                 let own = table.get_ref().spacing.as_ref().map(Spanned::span);
-                let at = own.or(self.spacing.map(Spanned::span));
+                let at = own.or(self.case.spacing.as_ref().map(Spanned::span));
                 let at = at.unwrap_or_else(|| table.get_ref().name.span());
                 let title = format!(
                     "the body `{}` would have more than {MOST_SITES:e} particles",

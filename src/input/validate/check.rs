@@ -25,6 +25,8 @@ pub enum Allowed {
     UpToOne,
     /// Between two numbers, both included.
     Within(f64, f64),
+    /// A whole number or more.
+    AtLeast(u32),
 }
 
 impl Allowed {
@@ -38,10 +40,17 @@ impl Allowed {
                 Self::AboveOne => x > 1.0,
                 Self::UpToOne => x > 0.0 && x <= 1.0,
                 Self::Within(low, high) => low <= x && x <= high,
+                Self::AtLeast(least) => x >= f64::from(least),
             }
     }
 
-    fn words(self) -> String {
+    /// Whether it has a whole number.
+    #[allow(clippy::cast_precision_loss, reason = "bounds are small")]
+    pub fn has_whole(self, n: u64) -> bool {
+        self.has(n as f64)
+    }
+
+    pub fn words(self) -> String {
         match self {
             Self::Any => "finite".to_owned(),
             Self::Positive => "positive".to_owned(),
@@ -50,6 +59,7 @@ impl Allowed {
             Self::AboveOne => "above 1".to_owned(),
             Self::UpToOne => "above 0 and at most 1".to_owned(),
             Self::Within(low, high) => format!("between {low} and {high}"),
+            Self::AtLeast(least) => format!("{least} or more"),
         }
     }
 }
@@ -85,92 +95,29 @@ impl<K> Value for Quantity<K> {
     }
 }
 
-/// The [`number`](number()) of a key of a table, or its default: `number!(params.alpha, or 1.0,
-/// Positive)`.
-macro_rules! number {
-    ($table:ident.$key:ident, or $default:expr, $($allowed:tt)+) => {
-        $crate::input::validate::check::number(
-            $table.$key.as_ref(),
-            stringify!($key),
-            $default,
-            $crate::input::validate::check::Allowed::$($allowed)+,
-        )?
-    };
-}
-
-/// The [`required`](required()) number of a key of a table; `$base` is the law whose field of the
-/// same name is taken without one.
-macro_rules! required {
-    ($table:ident.$key:ident, $base:expr, $allowed:ident, $at:expr) => {
-        $crate::input::validate::check::required(
-            $table.$key.as_ref(),
-            stringify!($key),
-            $base.map(|law| law.$key),
-            $crate::input::validate::check::Allowed::$allowed,
-            $at,
-        )?
-    };
-}
-
-/// A number in SI units, or its default.
+/// A number in SI units.
 pub fn number<V: Value>(
-    value: Option<&Spanned<V>>,
+    value: &Spanned<V>,
     key: &str,
-    default: f64,
     allowed: Allowed,
 ) -> Result<f64, Diagnostic> {
-    match value {
-        None => Ok(default),
-        Some(x) if x.get_ref().si().is_finite() && x.get_ref().si().abs() > V::LARGEST => {
-            let title = format!("`{key}` cannot be larger than {}", short(V::LARGEST));
-            Err(Diagnostic::new(x.span(), title).label("out of range"))
-        }
-        Some(x) if allowed.has(x.get_ref().si()) => Ok(x.get_ref().si()),
-        Some(x) => Err(out_of_range(x.span(), key, &allowed.words())),
+    let x = value.get_ref().si();
+    if x.is_finite() && x.abs() > V::LARGEST {
+        let title = format!("`{key}` cannot be larger than {}", short(V::LARGEST));
+        return Err(Diagnostic::new(value.span(), title).label("out of range"));
     }
+    if allowed.has(x) {
+        return Ok(x);
+    }
+    Err(out_of_range(value.span(), key, &allowed.words()))
 }
 
-/// A number in SI units, if there is one.
-pub fn optional<V: Value>(
-    value: Option<&Spanned<V>>,
-    key: &str,
-    allowed: Allowed,
-) -> Result<Option<f64>, Diagnostic> {
-    value
-        .map(|x| number(Some(x), key, 0.0, allowed))
-        .transpose()
-}
-
-/// A number in SI units that has no default but the `base`, if there is one; `table` is where it
-/// should stand.
-pub fn required<V: Value>(
-    value: Option<&Spanned<V>>,
-    key: &str,
-    base: Option<f64>,
-    allowed: Allowed,
-    table: &Range<usize>,
-) -> Result<f64, Diagnostic> {
-    if value.is_none() && base.is_none() {
+/// What a key or another source gives; `table` is where the key should stand.
+pub fn required<T>(found: Option<T>, key: &str, table: &Range<usize>) -> Result<T, Diagnostic> {
+    found.ok_or_else(|| {
         let title = format!("the key `{key}` is missing");
-        return Err(Diagnostic::new(table.clone(), title).label("in this table"));
-    }
-    number(value, key, base.unwrap_or_default(), allowed)
-}
-
-/// A whole number of at least `least`, or its default.
-pub fn whole(
-    value: Option<&Spanned<i64>>,
-    key: &str,
-    default: u64,
-    least: u64,
-) -> Result<u64, Diagnostic> {
-    let Some(value) = value else {
-        return Ok(default);
-    };
-    match u64::try_from(*value.get_ref()) {
-        Ok(n) if n >= least => Ok(n),
-        _ => Err(out_of_range(value.span(), key, &format!("{least} or more"))),
-    }
+        Diagnostic::new(table.clone(), title).label("in this table")
+    })
 }
 
 /// A vector must have a component for each dimension.

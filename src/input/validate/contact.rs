@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use crate::input::schema::contact::Choice;
 use crate::input::schema::{
     BodyParams, ContactParams, FrictionParams, PairParams, SelfContactParams,
@@ -98,7 +97,7 @@ fn self_contact(
     let folds = match given.get_ref() {
         SelfContactParams::Is(false) => return Ok(None),
         SelfContactParams::Is(true) => None,
-        SelfContactParams::With(table) => table.folds.as_ref(),
+        SelfContactParams::With(table) => table.folds.as_ref().zip(table.folds()?),
     };
     if joined {
         let title = "self-contact knows no bodies that are joined by `kernel` contact";
@@ -109,8 +108,7 @@ fn self_contact(
     let least = 2.0 * ratio;
     let folds = match folds {
         None => None,
-        Some(folds) => {
-            let spacings = number(Some(folds), "folds", 0.0, Allowed::Positive)?;
+        Some((folds, spacings)) => {
             if spacings < least {
                 let title = format!("`folds` must be at least {least:.2} spacings, the support");
                 return Err(Diagnostic::new(folds.span(), title).label("out of range"));

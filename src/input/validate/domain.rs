@@ -2,7 +2,7 @@
 
 use toml::Spanned;
 
-use super::check::{out_of_range, whole};
+use super::check::out_of_range;
 use super::region::KeepReader;
 use super::{Diagnostic, axis};
 use crate::input::schema::{DomainParams, LevelsParams};
@@ -20,19 +20,15 @@ pub fn domain(
     Ok(DomainOptions {
         levels: levels(params, dimension)?,
         axes: axes(params, dimension)?,
-        balance_every: whole(params.balance_every.as_ref(), "balance_every", 25, 0)?,
+        balance_every: params.balance_every()?,
         keep: keep.transpose()?,
     })
 }
 
 /// The number of levels, unless it is to be chosen.
 fn levels(params: &DomainParams, dimension: usize) -> Result<Option<usize>, Diagnostic> {
-    let Some(levels) = &params.levels else {
+    let LevelsParams::Number(number) = params.levels() else {
         return Ok(None);
-    };
-    let number = match *levels.get_ref() {
-        LevelsParams::Auto(_) => return Ok(None),
-        LevelsParams::Number(number) => number,
     };
     #[allow(
         clippy::float_cmp,
@@ -41,7 +37,8 @@ fn levels(params: &DomainParams, dimension: usize) -> Result<Option<usize>, Diag
     )]
     let found = (1..=dimension).find(|&levels| levels as f64 == number);
     let allowed = format!("\"auto\" or a whole number from 1 to {dimension}");
-    let refused = || out_of_range(levels.span(), "levels", &allowed);
+    let at = params.levels.as_ref().map_or(0..0, Spanned::span);
+    let refused = || out_of_range(at.clone(), "levels", &allowed);
     found.map(Some).ok_or_else(refused)
 }
 

@@ -2,18 +2,18 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use super::laws::law;
 use crate::input::forms::OrNone;
 use crate::input::schema::{FailureParams, failure_laws};
 use crate::input::source::Diagnostic;
-use crate::material::{AfterSpall, Effect, Failure, Manner, Strength};
+use crate::material::{AfterSpall, Effect, Failure, Law, Manner, Strength};
 
 macro_rules! failure {
     ($(
-        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident {
-            $( $(#[$key_doc:meta])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
-        }
+        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $(
+            $(#[$key_doc:meta])+ $key:ident: $typed:ty
+                $(= $value:expr)? $(, $allowed:ident)? $(=> $words:literal)?;
+        )+ }
     )+) => {
         /// Laws of the table, with values of the library's where the table has none.
         fn laws(params: &FailureParams, base: &Failure) -> Result<Failure, Diagnostic> {
@@ -24,7 +24,7 @@ macro_rules! failure {
                         OrNone::None => None,
                         OrNone::Table(params) => {
                             let (at, base) = (table.span(), base.$law);
-                            Some(law!(params, base, None, at, $made { $($key $allowed $($default)?;)+ }))
+                            Some(law!(params, base, |_: &str| None, at, $made { $($key [$($value)?])+ }))
                         }
                     },
                 }, )+
@@ -64,15 +64,9 @@ pub fn failure(
 /// What the laws have in common.
 fn manner(params: &FailureParams, failure: &Failure) -> Result<Manner, Diagnostic> {
     let base = failure.manner;
-    let energy = params.fracture_energy.as_ref();
     let mut manner = Manner {
-        fracture_energy: number(
-            energy,
-            "fracture_energy",
-            base.fracture_energy,
-            Allowed::NotNegative,
-        )?,
-        scatter: number!(params.scatter, or base.scatter, NotNegative),
+        fracture_energy: params.fracture_energy()?.unwrap_or(base.fracture_energy),
+        scatter: params.scatter()?.unwrap_or(base.scatter),
         seed: params
             .seed
             .as_ref()

@@ -2,7 +2,6 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use super::shapes::{Shapes, axis_vector};
 use super::surfaces::unit_vector;
 use crate::input::quantity::{Length, expected};
@@ -10,14 +9,11 @@ use crate::input::schema::{SpacingParams, SpacingTable};
 use crate::input::source::Diagnostic;
 use crate::model::{Focus, Grading, LatticeKind, Shape, Vec3};
 
-/// How many times as thick a layer is as the one before it, if the input does not say.
-const RATIO: f64 = 1.1;
-
 /// The finest spacing (m) of a body.
 pub fn finest(params: &Spanned<SpacingParams>) -> Result<f64, Diagnostic> {
     let title = match params.get_ref() {
         SpacingParams::Graded(table) => {
-            return number(Some(&table.inner), "inner", 0.0, Allowed::Positive);
+            return table.inner();
         }
         SpacingParams::Even(length) if length.si > 0.0 => return Ok(length.si),
         SpacingParams::Plain(plain) if *plain != 0.0 => {
@@ -48,13 +44,13 @@ pub fn grading(
         let title = "only glass can have a spacing that grows: take `lattice = \"glass\"`";
         return Err(Diagnostic::new(table.inner.span(), title));
     }
-    let outer = number(Some(&table.outer), "outer", 0.0, Allowed::Positive)?;
+    let outer = table.outer()?;
     if outer < shapes.spacing {
         let title = "the `outer` spacing must be no finer than the `inner` one";
         return Err(Diagnostic::new(table.outer.span(), title));
     }
     let most = 1.0 + Grading::MOST_GROWTH;
-    let ratio = table.ratio.as_ref().map_or(RATIO, |ratio| *ratio.get_ref());
+    let ratio = table.ratio();
     if !(ratio > 1.0 && ratio <= most) {
         let at = table.ratio.as_ref().map_or(0..0, Spanned::span);
         let title = format!("`ratio` must be above 1 and no more than {most}");

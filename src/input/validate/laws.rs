@@ -1,51 +1,17 @@
 //! What reads a law of a table: all of its constants, or single values changed.
 
-/// The value of a constant: that of the table, else that of the library's law of the same kind
-/// (`$base`), else its default, if it has one.
-macro_rules! value {
-    ($params:ident $key:ident $base:expr, Word, $at:ident) => {{
-        let word = $params.$key.as_ref().map(|word| *word.get_ref());
-        word.or($base).unwrap_or_default()
-    }};
-    ($params:ident $key:ident $base:expr, $allowed:ident, $at:ident, $default:literal) => {
-        $crate::input::validate::check::number(
-            $params.$key.as_ref(),
-            stringify!($key),
-            $base.unwrap_or($default),
-            $crate::input::validate::check::Allowed::$allowed,
-        )?
-    };
-    ($params:ident $key:ident $base:expr, $allowed:ident, $at:ident) => {
-        $crate::input::validate::check::required(
-            $params.$key.as_ref(),
-            stringify!($key),
-            $base,
-            $crate::input::validate::check::Allowed::$allowed,
-            &$at,
-        )?
-    };
-}
-
-/// The library's value of a constant. Every law of solids has a shear modulus (`$g`), so one may
-/// take it from another.
-macro_rules! base {
-    (shear_modulus $law:ident $g:expr) => {
-        $law.map(|law| law.shear_modulus).or($g)
-    };
-    ($key:ident $law:ident $g:expr) => {
-        $law.map(|law| law.$key)
-    };
-}
-
-/// The law of a table, with values of `$base`, the library's law of the same kind.
+/// The law of a table that stands `$at` a place, with values of `$base`, the library's law of the same kind, where the
+/// table has none; a number without a default may be that of `$other` then, a function of its key.
 macro_rules! law {
-    ($params:ident, $base:ident, $g:expr, $at:ident, $made:ident {
-        $($key:ident $allowed:ident $($default:literal)?;)+
-    }) => {{
+    ($params:ident, $base:ident, $other:expr, $at:ident, $made:ident { $($key:ident [$($value:expr)?])+ }) => {{
+        let other = $other;
         let law = crate::material::$made {
-            $( $key: $crate::input::validate::laws::value!($params $key $crate::input::validate::laws::base!($key $base $g), $allowed, $at $(, $default)?), )+
+            $( $key: $params.$key(
+                $crate::input::validate::laws::base!($base $key other [$($value)?]),
+                &$at,
+            )?, )+
         };
-        if let Some(wrong) = $crate::material::Law::contradiction(&law) {
+        if let Some(wrong) = law.contradiction() {
             let place = |key: &&str| match *key {
                 $( stringify!($key) => $params.$key.as_ref().map(toml::Spanned::span), )+
                 _ => None,
@@ -57,4 +23,16 @@ macro_rules! law {
     }};
 }
 
-pub(super) use {base, law, value};
+/// What a constant is if the table does not say.
+macro_rules! base {
+    ($base:ident $key:ident $other:ident []) => {
+        $base
+            .map(|law| law.$key)
+            .or_else(|| $other(stringify!($key)))
+    };
+    ($base:ident $key:ident $other:ident [$value:expr]) => {
+        $base.map(|law| law.$key)
+    };
+}
+
+pub(super) use {base, law};

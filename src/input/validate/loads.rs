@@ -132,7 +132,7 @@ impl Reader<'_> {
                 body.lattice.spacing,
             )?,
             motion: motion(&params.velocity, self.dimension)?,
-            until: number!(params.until, or f64::INFINITY, Positive),
+            until: params.until()?.unwrap_or(f64::INFINITY),
         };
         if self.holds_any(&load, body) {
             return Ok(load);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use super::check::{Allowed, optional};
+use super::check::required;
 use super::eos::eos;
 use super::failure::failure;
 use super::strength::strength;
@@ -13,9 +13,6 @@ use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
 use crate::input::source::Diagnostic;
 use crate::material::{Eos, Material, Thermal, ThermalConstants, library};
-
-/// Temperature of the reference state (K) where none is given.
-const ROOM: f64 = 300.0;
 
 /// Names and materials in the order of the input.
 pub fn materials(
@@ -54,7 +51,7 @@ fn material(
         return Err(missing("density"));
     }
     let known_density = base.map_or(0.0, |b| b.reference_density);
-    let reference_density = number!(params.density, or known_density, Positive);
+    let reference_density = params.density()?.unwrap_or(known_density);
     let eos = match (&params.eos, base.map(|b| &b.eos)) {
         (Some(table), base) => eos(table, base, reference_density)?,
         (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
@@ -126,25 +123,21 @@ fn thermal(
         None => base.copied(),
         Some(table) => {
             let params = table.get_ref();
-            let cold = base.map_or(ROOM, |b| b.reference_temperature);
-            let reference_temperature = number!(params.reference_temperature, or cold, NotNegative);
-            let melting = params.melting_temperature.as_ref();
-            let given = optional(melting, "melting_temperature", Allowed::Positive)?;
-            if let (Some(value), Some(t)) = (melting, given)
+            let cold = base.map(|b| b.reference_temperature);
+            let reference_temperature = params.reference_temperature(cold)?;
+            let given = params.melting_temperature()?;
+            if let (Some(value), Some(t)) = (&params.melting_temperature, given)
                 && t <= reference_temperature
             {
                 let title = "`melting_temperature` must be above `reference_temperature`";
                 return Err(Diagnostic::new(value.span(), title).label("out of range"));
             }
+            let specific_heat = params.specific_heat()?.or(base.map(|b| b.specific_heat));
             Some(ThermalConstants {
-                specific_heat: required!(params.specific_heat, base, Positive, &table.span()),
+                specific_heat: required(specific_heat, "specific_heat", &table.span())?,
                 reference_temperature,
                 melting_temperature: given.or(base.and_then(|b| b.melting_temperature)),
-                taylor_quinney: number!(
-                    params.taylor_quinney,
-                    or base.map_or(1.0, |b| b.taylor_quinney),
-                    Within(0.0, 1.0)
-                ),
+                taylor_quinney: params.taylor_quinney(base.map(|b| b.taylor_quinney))?,
             })
         }
     };

@@ -2,7 +2,6 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, optional, whole};
 use super::loads::given_name;
 use super::measures::measures;
 use super::named::{body, fields, unique};
@@ -22,7 +21,6 @@ pub fn measure(
     gauge_tables: &[Spanned<GaugeParams>],
     witness_tables: &[Spanned<WitnessParams>],
 ) -> Result<MeasureOptions, Diagnostic> {
-    let arrival = params.arrival_pressure.as_ref();
     let mut gauges: Vec<Gauge> = Vec::new();
     for (n, table) in gauge_tables.iter().enumerate() {
         let found = gauge(case, table, n + 1)?;
@@ -43,12 +41,11 @@ pub fn measure(
         unique(taken, "witness plane", &found.name, own, table)?;
         witnesses.push(found);
     }
-    let every = optional(params.every.as_ref(), "every", Allowed::Positive)?;
     Ok(MeasureOptions {
-        bodies: params.bodies.unwrap_or(true),
-        every: every.unwrap_or(case.run.end_time / ROWS),
+        bodies: params.bodies(),
+        every: params.every()?.unwrap_or(case.run.end_time / ROWS),
         measures: measures(case, params)?,
-        arrival_pressure: optional(arrival, "arrival_pressure", Allowed::Positive)?,
+        arrival_pressure: params.arrival_pressure()?,
         gauges,
         witnesses,
     })
@@ -73,7 +70,7 @@ fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<
     Ok(Gauge {
         name: given_name(params.name.as_ref(), "gauge", number_of),
         at,
-        moves: params.moves.unwrap_or(false),
+        moves: params.moves(),
         body: params
             .body
             .as_ref()
@@ -86,17 +83,12 @@ fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<
 }
 
 fn every(params: &GaugeParams) -> Result<Cadence, Diagnostic> {
-    match (&params.every, &params.every_steps) {
-        (Some(_), Some(steps)) => {
-            let title = "a gauge reads every so many steps or every so much time, not both";
-            Err(Diagnostic::new(steps.span(), title))
-        }
-        (Some(time), None) => {
-            let time = number(Some(time), "every", 0.0, Allowed::Positive)?;
-            Ok(Cadence::Time(time))
-        }
-        (None, steps) => Ok(Cadence::Steps(whole(steps.as_ref(), "every_steps", 1, 1)?)),
+    if let (Some(_), Some(steps)) = (&params.every, &params.every_steps) {
+        let title = "a gauge reads every so many steps or every so much time, not both";
+        return Err(Diagnostic::new(steps.span(), title));
     }
+    let steps = Cadence::Steps(params.every_steps()?.unwrap_or(1));
+    Ok(params.every()?.map_or(steps, Cadence::Time))
 }
 
 fn witness(case: &Case, params: &WitnessParams, number_of: usize) -> Result<Witness, Diagnostic> {

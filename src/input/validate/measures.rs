@@ -2,7 +2,6 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, optional};
 use super::loads::given_name;
 use super::named::{body, fields, unique};
 use super::region::region;
@@ -46,7 +45,7 @@ pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Dia
     for table in &params.bar {
         reader.bar(table)?;
     }
-    if params.usual.unwrap_or(true) {
+    if params.usual() {
         reader.usual();
     }
     for (n, table) in params.debris.iter().enumerate() {
@@ -58,7 +57,7 @@ pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Dia
     for (n, table) in params.front.iter().enumerate() {
         reader.front(table, n + 1)?;
     }
-    if params.usual.unwrap_or(true) {
+    if params.usual() {
         reader.usual_debris();
     }
     Ok(reader.found)
@@ -281,7 +280,7 @@ impl Reader<'_> {
             }
             debris.spacing = self.finest(&debris.bodies);
         }
-        let outline = optional(params.outline.as_ref(), "outline", Allowed::Positive)?;
+        let outline = params.outline()?;
         debris.outline = outline.unwrap_or(debris.outline);
         let name = given_name(params.name.as_ref(), "debris", n);
         self.add(
@@ -325,21 +324,21 @@ impl Reader<'_> {
         let sides = [params.above.as_ref(), params.below.as_ref()];
         let all: Vec<usize> = (0..self.case.bodies.len()).collect();
         let spacing = self.finest(&all);
-        let place = match (&params.radius, sides) {
+        let place = match (params.radius()?, sides) {
             (Some(radius), [None, None]) => ZonePlace::Ball {
                 centre: vector("centre", params.centre.as_ref(), self.case.dimension)?,
-                radius: super::check::number(Some(radius), "radius", 0.0, Allowed::Positive)?,
+                radius,
             },
             (None, sides) if params.centre.is_none() => {
                 ZonePlace::Sides(region(sides, self.case.dimension, spacing)?)
             }
-            (radius, _) => {
+            _ => {
                 let title = "a region has sides, or a `centre` and a `radius`";
-                let at = radius.as_ref().map_or(table.span(), Spanned::span);
+                let at = params.radius.as_ref().map_or(table.span(), Spanned::span);
                 return Err(Diagnostic::new(at, title));
             }
         };
-        let mark = params.moves.unwrap_or(false).then_some(self.marks + 1);
+        let mark = params.moves().then_some(self.marks + 1);
         self.marks += usize::from(mark.is_some());
         if self.marks > ZonePlace::MOST {
             let title = format!("a case can have {} regions that move", ZonePlace::MOST);
@@ -367,13 +366,12 @@ impl Reader<'_> {
         }
         let all: Vec<usize> = (0..self.case.bodies.len()).collect();
         let spacing = self.finest(&all);
-        let radius = optional(params.radius.as_ref(), "radius", Allowed::Positive)?;
         let kind = MeasureKind::Front(FrontLine {
             from,
             to,
-            radius: radius.unwrap_or(ASIDE * spacing),
+            radius: params.radius()?.unwrap_or(ASIDE * spacing),
             piece: PIECE * spacing,
-            pressure: optional(params.pressure.as_ref(), "pressure", Allowed::Positive)?,
+            pressure: params.pressure()?,
         });
         let name = given_name(params.name.as_ref(), "front", n);
         self.add(table, params.name.as_ref(), name, kind)

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use super::shapes::{unit, vector};
 use crate::input::schema::MeshFileParams;
 use crate::input::source::{Diagnostic, nearest};
@@ -31,7 +30,7 @@ impl MeshReader<'_> {
         format: Format,
     ) -> Result<Arc<Mesh>, Diagnostic> {
         let params = table.get_ref();
-        let unit_length = number(Some(&params.unit), "unit", 0.0, Allowed::Positive)?;
+        let unit_length = params.unit()?;
         let at = vector("at", params.at.as_ref(), 3)?;
         let path = self.folder.join(params.file.get_ref());
         let refuse = |cause: &str| {

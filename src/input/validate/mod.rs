@@ -44,10 +44,9 @@ use crate::material::Material;
 use crate::model::readable::Readable;
 use crate::model::{
     Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
-    RunControl, SmoothingLength, SphForm, SphOptions, SymmetryPlane, TimeStepOptions,
+    RunControl, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use crate::populate::overlap;
-use check::{Allowed, number, whole};
 use region::KeepReader;
 use toml::Spanned;
 
@@ -55,14 +54,14 @@ use toml::Spanned;
 const MOST_OVERLAP: f64 = 0.5;
 
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
-pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
+pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material, dimension)?;
     let (sph, smoothing) = sph(&params.sph)?;
     let mut bodies = bodies::Reader {
         dimension,
-        spacing: params.spacing.as_ref(),
+        case: params,
         materials: &names,
         known: &materials,
         filling: lattice::usual(dimension, sph.form),
@@ -73,7 +72,7 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     if bodies.iter().any(|body| body.material == materials.len()) {
         materials.push(bodies::no_material());
     }
-    let length_unit = length_unit(&params, &bodies);
+    let length_unit = length_unit(params, &bodies);
     let tears = may_tear(&bodies, &materials);
     let (default_contact, contacts, self_contact) =
         contact::contacts(&params.contact, &params.body, sph.form, smoothing, tears)?;
@@ -84,12 +83,12 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         length_unit: &length_unit,
         folder,
     }
-    .all(&params)?;
+    .all(params)?;
     let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
     let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
-    let (domain, output) = domain_and_output(&params, &boxes, &materials)?;
+    let (domain, output) = domain_and_output(params, &boxes, &materials)?;
     let mut case = Case {
-        title: names::title(params.title.take())?,
+        title: names::title(params)?,
         length_unit,
         dimension,
         materials,
@@ -109,7 +108,7 @@ pub fn case(mut params: CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         measure: MeasureOptions::default(),
         resolved: String::new(),
     };
-    complete(&mut case, &params)?;
+    complete(&mut case, params)?;
     Ok(case)
 }
 
@@ -234,37 +233,33 @@ fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryP
         }
         planes.push(SymmetryPlane {
             axis,
-            position: number!(plane.position, or 0.0, Any),
+            position: plane.position()?,
         });
     }
     Ok(planes)
 }
 
 /// The options of the sums, and smoothing length over spacing.
-fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
+pub(super) fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
     let bounds = SmoothingLength::Variable {
-        min: number!(params.smoothing_length_min, or 0.6, UpToOne),
-        max: number!(params.smoothing_length_max, or 2.0, Within(1.0, 10.0)),
+        min: params.smoothing_length_min()?,
+        max: params.smoothing_length_max()?,
     };
-    let usual = SphOptions::default();
     let options = SphOptions {
-        form: params
-            .form
-            .as_ref()
-            .map_or_else(SphForm::default, |form| *form.get_ref()),
-        alpha: number!(params.alpha, or usual.alpha, NotNegative),
-        beta: number!(params.beta, or usual.beta, NotNegative),
-        smoothing_length: match params.smoothing_length {
-            None | Some(SmoothingName::Constant) => SmoothingLength::Constant,
-            Some(SmoothingName::Variable) => bounds,
+        form: params.form(),
+        alpha: params.alpha()?,
+        beta: params.beta()?,
+        smoothing_length: match params.smoothing_length() {
+            SmoothingName::Constant => SmoothingLength::Constant,
+            SmoothingName::Variable => bounds,
         },
-        artificial_stress: number!(params.artificial_stress, or usual.artificial_stress, Within(0.0, 1.0)),
-        balsara: params.balsara.unwrap_or(false),
-        conduction: number!(params.conduction, or usual.conduction, Within(0.0, 2.0)),
-        xsph: number!(params.xsph, or usual.xsph, Within(0.0, 1.0)),
-        hourglass: number!(params.hourglass, or usual.hourglass, Within(0.0, 1.0)),
+        artificial_stress: params.artificial_stress()?,
+        balsara: params.balsara(),
+        conduction: params.conduction()?,
+        xsph: params.xsph()?,
+        hourglass: params.hourglass()?,
     };
-    Ok((options, number!(params.smoothing, or 1.3, Within(0.6, 3.0))))
+    Ok((options, params.smoothing()?))
 }
 
 /// Smallest h/h₀ that a particle may have.
@@ -285,16 +280,12 @@ fn time_step(
         let shortest = body.smoothing_length * smallest_smoothing(sph);
         materials[body.material].diffusion_time(shortest)
     });
-    let given = TimeStepOptions {
-        courant: number!(params.courant, or 0.5, UpToOne),
-        force: number!(params.force, or 0.25, UpToOne),
-        // Of a bound that is safe by itself; .55 of it is what the first moments of an impact at
-        // h = 1.3 Δp take by their sound criterion, so that contact does not slow them down.
-        contact: number!(params.contact, or 0.8, UpToOne),
-        max: number!(params.max, or f64::INFINITY, Positive),
-    };
-    let max = diffusion.fold(given.max, f64::min);
-    Ok(TimeStepOptions { max, ..given })
+    Ok(TimeStepOptions {
+        courant: params.courant()?,
+        force: params.force()?,
+        contact: params.contact()?,
+        max: diffusion.fold(params.max()?.unwrap_or(f64::INFINITY), f64::min),
+    })
 }
 
 /// What has boxes.
@@ -314,11 +305,8 @@ fn domain_and_output(
 }
 
 fn run(params: &RunParams) -> Result<RunControl, Diagnostic> {
-    let max_steps = params.max_steps.as_ref();
     Ok(RunControl {
-        end_time: number(Some(&params.end_time), "end_time", 0.0, Allowed::Positive)?,
-        max_steps: max_steps
-            .map(|steps| whole(Some(steps), "max_steps", 0, 1))
-            .transpose()?,
+        end_time: params.end_time()?,
+        max_steps: params.max_steps()?,
     })
 }

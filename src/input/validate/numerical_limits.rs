@@ -11,12 +11,12 @@ pub fn numerical_limits(
 ) -> Result<NumericalLimits, Diagnostic> {
     let natural = NumericalLimits::natural(case);
     Ok(NumericalLimits {
-        policy: params.policy.unwrap_or_default(),
-        speed_max: number!(params.speed_max, or natural.speed_max, Positive),
-        energy_max: number!(params.energy_max, or natural.energy_max, Positive),
-        density_min: number!(params.density_min, or natural.density_min, Within(0.0, 1.0)),
-        density_max: number!(params.density_max, or natural.density_max, AboveOne),
-        step_min: number!(params.step_min, or natural.step_min, NotNegative),
-        gain_max: number!(params.gain_max, or natural.gain_max, AboveOne),
+        policy: params.policy(),
+        speed_max: params.speed_max()?.unwrap_or(natural.speed_max),
+        energy_max: params.energy_max()?.unwrap_or(natural.energy_max),
+        density_min: params.density_min()?,
+        density_max: params.density_max()?,
+        step_min: params.step_min()?.unwrap_or(natural.step_min),
+        gain_max: params.gain_max()?,
     })
 }

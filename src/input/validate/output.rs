@@ -2,11 +2,11 @@
 
 use toml::Spanned;
 
-use super::check::{Allowed, number, optional, whole};
+use super::check::{Allowed, number};
 use super::named::check_listed;
 use super::region::KeepReader;
 use crate::input::names;
-use crate::input::quantity::{Placed, Time};
+use crate::input::schema::value::Ranged;
 use crate::input::schema::{CadenceParams, ClockParams, OutputParams, SnapshotParams};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
@@ -28,7 +28,7 @@ pub struct Reader<'a> {
 impl Reader<'_> {
     /// The whole table.
     pub fn read(&self, params: &OutputParams) -> Result<OutputOptions, Diagnostic> {
-        let kept = whole(params.checkpoints_kept.as_ref(), "checkpoints_kept", 2, 1)?;
+        let kept = params.checkpoints_kept()?;
         let fields = self.fields(&params.fields)?;
         let mut snapshots: Vec<SnapshotSchedule> = Vec::new();
         for table in &params.snapshot {
@@ -36,11 +36,9 @@ impl Reader<'_> {
             snapshots.push(schedule);
         }
         Ok(OutputOptions {
-            snapshot_every: every(params.snapshot_every.as_ref(), "snapshot_every")?,
-            checkpoint_every: every(params.checkpoint_every.as_ref(), "checkpoint_every")?,
-            checkpoint_every_steps: (params.checkpoint_every_steps.as_ref())
-                .map(|steps| whole(Some(steps), "checkpoint_every_steps", 0, 1))
-                .transpose()?,
+            snapshot_every: params.snapshot_every()?,
+            checkpoint_every: params.checkpoint_every()?,
+            checkpoint_every_steps: params.checkpoint_every_steps()?,
             checkpoint_every_wall: clock_interval(params)?,
             checkpoints_kept: usize::try_from(kept).unwrap_or(usize::MAX),
             history_every: history_every(params)?,
@@ -67,11 +65,11 @@ impl Reader<'_> {
         let region = region.map(|table| self.boxes.read_box(table, "region", self.spacing));
         Ok(SnapshotSchedule {
             name: name.get_ref().clone(),
-            every: every(params.every.as_ref(), "every")?,
+            every: params.every()?,
             fields,
             bodies: self.bodies(&params.bodies)?,
             region: region.transpose()?,
-            precision: params.precision.unwrap_or_default(),
+            precision: params.precision(),
         })
     }
 
@@ -126,15 +124,8 @@ impl Reader<'_> {
 const LARGEST_ALIGNMENT: u64 = 1 << 30;
 
 fn sharing(params: &OutputParams) -> Result<Sharing, Diagnostic> {
-    let writers = params.writers.as_ref();
-    let writers = writers
-        .map(|n| whole(Some(n), "writers", 0, 1))
-        .transpose()?;
-    let alignment = params.alignment.as_ref();
-    let bytes = alignment
-        .map(|n| whole(Some(n), "alignment", 0, 1))
-        .transpose()?;
-    if let (Some(at), Some(bytes)) = (alignment, bytes)
+    let (writers, bytes) = (params.writers()?, params.alignment()?);
+    if let (Some(at), Some(bytes)) = (&params.alignment, bytes)
         && (!bytes.is_power_of_two() || bytes > LARGEST_ALIGNMENT)
     {
         let title = format!(
@@ -148,28 +139,21 @@ fn sharing(params: &OutputParams) -> Result<Sharing, Diagnostic> {
     })
 }
 
-/// Mean time between failures (s), if nothing is known of the machine: of some thousand nodes.
-const FAILURES: f64 = 6.0 * 3600.0;
-
 fn clock_interval(params: &OutputParams) -> Result<Option<ClockInterval>, Diagnostic> {
-    let failures = params.mean_time_between_failures.as_ref();
-    let key = "mean_time_between_failures";
-    let given = optional(failures, key, Allowed::Positive)?;
+    let failures = params.mean_time_between_failures()?;
     let every = params.checkpoint_every_wall.as_ref();
     let auto = matches!(every.map(Spanned::get_ref), Some(ClockParams::Auto));
-    if let (Some(failures), false) = (failures, auto) {
-        let title = format!("`{key}` is for `checkpoint_every_wall = \"auto\"` alone");
-        return Err(Diagnostic::new(failures.span(), title));
+    if let (Some(given), false) = (&params.mean_time_between_failures, auto) {
+        let title = "`mean_time_between_failures` is for `checkpoint_every_wall = \"auto\"` alone";
+        return Err(Diagnostic::new(given.span(), title));
     }
     let Some(every) = every else { return Ok(None) };
     Ok(Some(match every.get_ref() {
-        ClockParams::Auto => ClockInterval::Auto {
-            failures: given.unwrap_or(FAILURES),
-        },
+        ClockParams::Auto => ClockInterval::Auto { failures },
         ClockParams::Every(time) => {
             let time = Spanned::new(every.span(), *time);
             let key = "checkpoint_every_wall";
-            ClockInterval::Fixed(number(Some(&time), key, 0.0, Allowed::Positive)?)
+            ClockInterval::Fixed(number(&time, key, Allowed::Positive)?)
         }
     }))
 }
@@ -182,17 +166,13 @@ fn history_every(params: &OutputParams) -> Result<Option<Cadence>, Diagnostic> {
     Ok(Some(match every.get_ref() {
         CadenceParams::Steps(steps) => {
             let steps = Spanned::new(every.span(), *steps);
-            Cadence::Steps(whole(Some(&steps), key, 0, 1)?)
+            Cadence::Steps(steps.within(key, Allowed::AtLeast(1))?)
         }
         CadenceParams::Time(time) => {
             let time = Spanned::new(every.span(), *time);
-            Cadence::Time(number(Some(&time), key, 0.0, Allowed::Positive)?)
+            Cadence::Time(number(&time, key, Allowed::Positive)?)
         }
     }))
-}
-
-fn every(value: Option<&Placed<Time>>, key: &str) -> Result<Option<f64>, Diagnostic> {
-    optional(value, key, Allowed::Positive)
 }
 
 /// The name of a folder among snapshots, which begin with `step-` and have endings.

@@ -8,12 +8,11 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
-use super::check::{Allowed, number};
 use super::meshes::missing_file;
 use super::shapes::Shapes;
 use super::solids::turns;
 use crate::input::cloud::{self, Columns, Fault, Request, Table, UnitSystem};
-use crate::input::schema::{BodyParams, FormatName, ParticlesParams, TakeName};
+use crate::input::schema::{BodyParams, FormatName, ParticlesParams};
 use crate::input::source::Diagnostic;
 use crate::material::Material;
 use crate::model::{
@@ -102,17 +101,10 @@ impl Files<'_> {
     }
 
     fn request(&self, params: &ParticlesParams, format: FormatName) -> Result<Request, Diagnostic> {
-        macro_rules! unit {
-            ($key:ident) => {{
-                let given = params.$key.as_ref();
-                let si = number(given, stringify!($key), 1.0, Allowed::Positive)?;
-                given.map(|_| si)
-            }};
-        }
         let stated = UnitSystem {
-            length: unit!(unit),
-            mass: unit!(mass_unit),
-            time: unit!(time_unit),
+            length: params.unit()?,
+            mass: params.mass_unit()?,
+            time: params.time_unit()?,
         };
         if let (FormatName::Snapshot, Some(given)) = (format, &params.unit) {
             let title = "a snapshot of this program is in SI units: it needs no `unit`";
@@ -131,7 +123,6 @@ impl Files<'_> {
             let title = "a file of this format has no `columns` to name";
             return Err(Diagnostic::new(given.span(), title));
         }
-        let take = params.take.as_ref();
         Ok(Request {
             dimension: self.dimension,
             units: stated,
@@ -140,7 +131,7 @@ impl Files<'_> {
                 .as_ref()
                 .map_or_else(Columns::default, columns),
             parts: params.part.as_ref().map_or(Ok(Vec::new()), parts)?,
-            take: take.map_or(TakeName::Elements, |take| *take.get_ref()),
+            take: params.take(),
         })
     }
 

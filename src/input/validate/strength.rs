@@ -7,13 +7,14 @@ use super::laws::law;
 use crate::input::forms::OrNone;
 use crate::input::schema::{StrengthParams, strength_laws};
 use crate::input::source::Diagnostic;
-use crate::material::Strength;
+use crate::material::{Law, Strength};
 
 macro_rules! strength {
     ($(
-        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident {
-            $( $(#[$key_doc:meta])+ $key:ident: $value:ty, $allowed:ident $(, or $default:literal)?; )+
-        }
+        $(#[$doc:meta])+ $law:ident: $table:ident => $made:ident { $(
+            $(#[$key_doc:meta])+ $key:ident: $typed:ty
+                $(= $value:expr)? $(, $allowed:ident)? $(=> $words:literal)?;
+        )+ }
     )+) => {
         /// The strength of a table, with values of the library's `base` where the table has none.
         pub fn strength(
@@ -30,13 +31,15 @@ macro_rules! strength {
                 return Err(exactly_one(at, "strength", &choices)
                     .help("or write `strength = \"none\"` for a fluid"));
             }
+            // Every law of solids has one.
             let g = base.map(Strength::shear_modulus).filter(|g| *g > 0.0);
+            let other = |key: &str| g.filter(|_| key == "shear_modulus");
             $( if let Some(params) = &params.$law {
                 let base = match base {
                     Some(Strength::$made(law)) => Some(law),
                     _ => None,
                 };
-                let law = law!(params, base, g, at, $made { $($key $allowed $($default)?;)+ });
+                let law = law!(params, base, other, at, $made { $($key [$($value)?])+ });
                 return Ok(Strength::$made(law));
             } )+
             Err(exactly_one(at, "strength", &choices))

@@ -5,7 +5,6 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::axis;
-use super::check::{Allowed, number};
 use super::loads::{Reader, given_name};
 use super::meshes::MeshReader;
 use super::motion::{motion, rate};
@@ -21,9 +20,6 @@ use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
 use crate::model::{Axis, Motion, Resistance, RigidSurface, Spin, SurfaceShape};
 use crate::populate;
-
-/// Default stiffness of a rigid surface: that of the half spacing of material before it.
-const STIFFNESS: f64 = 2.0;
 
 /// A place as it is typed.
 type Place = Spanned<Vec<Placed<Length>>>;
@@ -61,12 +57,8 @@ impl Reader<'_> {
             name: given_name(params.name.as_ref(), "plane", number_of),
             shape: SurfaceShape::Plane { normal, position },
             inside: false,
-            stiffness: number!(params.stiffness, or STIFFNESS, Positive),
-            resistance: resistance(
-                params.friction.as_ref(),
-                params.damping.as_ref(),
-                Resistance::default(),
-            )?,
+            stiffness: params.stiffness()?,
+            resistance: resistance(params.friction()?, params.damping()?, Resistance::default()),
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: None,
@@ -83,13 +75,9 @@ impl Reader<'_> {
         Ok(RigidSurface {
             name: given_name(params.name.as_ref(), "surface", number_of),
             shape: self.shape(&params.shape)?,
-            inside: params.side == Some(SideName::Inside),
-            stiffness: number!(params.stiffness, or STIFFNESS, Positive),
-            resistance: resistance(
-                params.friction.as_ref(),
-                params.damping.as_ref(),
-                Resistance::default(),
-            )?,
+            inside: params.side() == SideName::Inside,
+            stiffness: params.stiffness()?,
+            resistance: resistance(params.friction()?, params.damping()?, Resistance::default()),
             bodies: self.acts_on(params.bodies.as_deref())?,
             motion: given.map_or(Ok(Motion::default()), |m| motion(m, self.dimension))?,
             spin: spin.transpose()?,
@@ -192,7 +180,7 @@ impl Reader<'_> {
     fn sphere(&self, params: &SurfaceSphereParams) -> Result<SurfaceShape, Diagnostic> {
         Ok(SurfaceShape::Sphere {
             centre: self.place("centre", params.centre.as_ref())?,
-            radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
+            radius: params.radius()?,
         })
     }
 
@@ -200,8 +188,8 @@ impl Reader<'_> {
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
             axis: unit(params.axis.as_ref().map_or(Axis::Z, |axis| *axis.get_ref())),
-            radius: number(Some(&params.radius), "radius", 0.0, Allowed::Positive)?,
-            half_length: 0.5 * number!(params.length, or f64::INFINITY, Positive),
+            radius: params.radius()?,
+            half_length: 0.5 * params.length()?.unwrap_or(f64::INFINITY),
         })
     }
 

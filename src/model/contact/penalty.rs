@@ -1,5 +1,7 @@
 //! Parameters of the mode `penalty`.
 
+use serde::Deserialize;
+
 use super::{ContactLaw, Resistance};
 
 /// Penalty between boundary particles (Campbell, Vignjevic & Libersky 2000).
@@ -14,7 +16,8 @@ pub struct Penalty {
 }
 
 /// Law of the penalty force (Belytschko & Neal 1991).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PenaltyLaw {
     /// As the depth to the power 3/2, as between spheres: a function of places.
     Hertz,

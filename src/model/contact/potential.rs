@@ -1,5 +1,7 @@
 //! Parameters of the mode `potential`.
 
+use serde::Deserialize;
+
 use super::{ContactDirection, ContactLaw};
 
 /// Contact potential of Vignjevic, De Vuyst & Campbell (2006), eqs. 20–24.
@@ -17,7 +19,8 @@ pub struct Potential {
 }
 
 /// Where the contact potential acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum PotentialRange {
     /// Everywhere in the kernel's support, 2h.
     Support,

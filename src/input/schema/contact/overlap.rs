@@ -3,39 +3,31 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{DirectionName, Shared, direction};
+use super::{Shared, direction};
 use crate::input::source::Diagnostic;
-use crate::input::validate::check::{Allowed, number};
-use crate::model::Overlap;
+use crate::model::{ContactDirection, Overlap};
 
 optional_tables! {
     /// `contact.overlap`
     OverlapParams {
-        /// Stiffness κ; `4`, or that of all pairs, if absent.
-        stiffness: Option<Spanned<f64>>,
-        /// Stiffness `κ_c` of the core; `2.2`, or that of all pairs, if absent.
-        core_stiffness: Option<Spanned<f64>>,
-        /// Radius of the core in mean spacings; `0.6`, or that of all pairs, if absent.
-        core_radius: Option<Spanned<f64>>,
-        /// Along what it acts; `"pair"`, or that of all pairs, if absent.
-        direction: Option<Spanned<DirectionName>>,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>> = Overlap::default().stiffness, Positive => or "that of all pairs";
+        /// Stiffness `κ_c` of the core.
+        core_stiffness: Option<Spanned<f64>> = Overlap::default().core_stiffness, NotNegative => or "that of all pairs";
+        /// Radius of the core in mean spacings.
+        core_radius: Option<Spanned<f64>> = Overlap::default().core_radius, Within(0.0, 1.0) => or "that of all pairs";
+        /// Along what it acts.
+        direction: Option<Spanned<ContactDirection>> = Overlap::default().direction => or "that of all pairs";
     }
 }
 
 impl OverlapParams {
     /// The parameters, with those of `base` where the table has none.
-    pub(super) fn law(&self, base: Overlap, shared: &Shared) -> Result<Overlap, Diagnostic> {
-        let (stiffness, core) = (self.stiffness.as_ref(), self.core_stiffness.as_ref());
-        let (radius, one) = (self.core_radius.as_ref(), Allowed::Within(0.0, 1.0));
+    pub(super) fn parameters(&self, base: Overlap, shared: &Shared) -> Result<Overlap, Diagnostic> {
         Ok(Overlap {
-            stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
-            core_stiffness: number(
-                core,
-                "core_stiffness",
-                base.core_stiffness,
-                Allowed::NotNegative,
-            )?,
-            core_radius: number(radius, "core_radius", base.core_radius, one)?,
+            stiffness: self.stiffness(base.stiffness)?,
+            core_stiffness: self.core_stiffness(base.core_stiffness)?,
+            core_radius: self.core_radius(base.core_radius)?,
             direction: direction(self.direction.as_ref(), base.direction, shared)?,
             resistance: shared.resistance,
         })

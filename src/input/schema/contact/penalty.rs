@@ -5,40 +5,24 @@ use toml::Spanned;
 
 use super::Shared;
 use crate::input::source::Diagnostic;
-use crate::input::validate::check::{Allowed, number};
 use crate::model::{Penalty, PenaltyLaw};
 
 optional_tables! {
     /// `contact.penalty`
     PenaltyParams {
-        /// Stiffness κ; `2`, or that of all pairs, if absent.
-        stiffness: Option<Spanned<f64>>,
-        /// Law of the force; `"hertz"`, or that of all pairs, if absent.
-        law: Option<PenaltyLawName>,
-    }
-}
-
-choices! {
-    /// Law of the penalty force.
-    PenaltyLawName {
-        /// Depth to the power 3/2.
-        Hertz,
-        /// No more than what stops the approach in one step.
-        Pinball,
+        /// Stiffness κ.
+        stiffness: Option<Spanned<f64>> = Penalty::default().stiffness, Positive => or "that of all pairs";
+        /// Law of the force.
+        law: Option<PenaltyLaw> = Penalty::default().law => or "that of all pairs";
     }
 }
 
 impl PenaltyParams {
     /// The parameters, with those of `base` where the table has none.
-    pub(super) fn law(&self, base: Penalty, shared: &Shared) -> Result<Penalty, Diagnostic> {
-        let stiffness = self.stiffness.as_ref();
+    pub(super) fn parameters(&self, base: Penalty, shared: &Shared) -> Result<Penalty, Diagnostic> {
         Ok(Penalty {
-            stiffness: number(stiffness, "stiffness", base.stiffness, Allowed::Positive)?,
-            law: match self.law {
-                Some(PenaltyLawName::Hertz) => PenaltyLaw::Hertz,
-                Some(PenaltyLawName::Pinball) => PenaltyLaw::Pinball,
-                None => base.law,
-            },
+            stiffness: self.stiffness(base.stiffness)?,
+            law: self.law(base.law)?,
             resistance: shared.resistance,
         })
     }
