@@ -5,6 +5,7 @@ pub mod outcome;
 pub mod process;
 pub mod random;
 pub mod sentinel;
+pub mod threads;
 pub mod virtual_ranks;
 
 use material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};

@@ -13,6 +13,7 @@ use super::sphere_on_plate;
 
 /// A case on one rank, without MPI.
 pub fn start(case: Case) -> Simulation {
+    super::threads::stay_alone();
     Simulation::start(case, &Comm::solo()).unwrap()
 }
 

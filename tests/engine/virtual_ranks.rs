@@ -420,12 +420,22 @@ fn debris_on_any_ranks_is_that_on_one() {
 
 /// From the first step on, with faces that move.
 #[test]
+fn two_hundred_ranks_compute_what_one_does() {
+    many_compute_what_one_does(200, "0.05mm");
+}
+
+#[test]
+#[ignore = "slow: a thousand threads that wait for each other"]
 fn a_thousand_ranks_compute_what_one_does() {
-    let begin = |comm: &Comm| Simulation::start(impact("0.03mm", 3, 2), comm).unwrap();
+    many_compute_what_one_does(1000, "0.03mm");
+}
+
+fn many_compute_what_one_does(ranks: usize, spacing: &str) {
+    let begin = |comm: &Comm| Simulation::start(impact(spacing, 3, 2), comm).unwrap();
     let solo = Comm::solo();
     let mut alone = begin(&solo);
     advance(&solo, &mut alone, 4);
-    let all = together(1000, 4, begin);
+    let all = together(ranks, 4, begin);
     assert_same(&all, &Outcome::of(&alone));
 }
 

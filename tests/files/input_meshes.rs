@@ -370,8 +370,8 @@ fn quads_of_an_obj_file_make_a_body_and_a_surface() {
 #[test]
 fn the_resolved_case_finds_its_files_and_knows_them() {
     let folder = tempfile::tempdir().unwrap();
-    write_obj(&folder.path().join("ball.obj"), &ball(5, 0.5));
-    write_stl(&folder.path().join("part.stl"), &torus(6, 1.0, 0.4));
+    write_obj(&folder.path().join("ball.obj"), &ball(3, 0.5));
+    write_stl(&folder.path().join("part.stl"), &torus(3, 1.0, 0.4));
     let body = "[body.shape]\nunion = [\n\
         { stl = { file = \"part.stl\", unit = \"1 mm\" } },\n\
         { difference = [{ box = { size = [\"1 mm\", \"1 mm\", \"1 mm\"] } },\n\
@@ -385,7 +385,7 @@ fn the_resolved_case_finds_its_files_and_knows_them() {
         assert_eq!(again.bodies, case.bodies);
         assert_eq!(again.resolved, case.resolved);
         let saved = std::fs::read(folder.path().join("ball.obj")).unwrap();
-        write_obj(&folder.path().join("ball.obj"), &ball(6, 0.5));
+        write_obj(&folder.path().join("ball.obj"), &ball(4, 0.5));
         let error = files::input::parse("elsewhere/case.toml", &case.resolved, &[]).unwrap_err();
         let said = "ball.obj is no longer the one that the case began with";
         assert!(error.to_string().contains(said), "{error}");

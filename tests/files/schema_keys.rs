@@ -41,13 +41,14 @@ pub fn keys() -> Vec<Key> {
 }
 
 /// Macros of laws, and the tables whose keys they are.
-const LAWS: [(&str, &str); 2] = [
+const LAWS: [(&str, &str); 3] = [
+    ("equations_of_state", "EosParams"),
     ("strength_laws", "StrengthParams"),
     ("failure_laws", "FailureParams"),
 ];
 
-/// Reads declarations such as `Table { key: Type, }`, one key a line, and those of laws, `law:
-/// Table => Law { key: Type, Range; }`.
+/// Reads declarations such as `Table { key: Type = default, Range; }`, one key a line, and those of laws, `law:
+/// Table => Law { key: Type, Range; } or { key: Type, Range }`.
 fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>>) {
     let mut table = None;
     let mut laws = None;
@@ -57,7 +58,8 @@ fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>
             let named = |(of, _): &&(&str, &str)| line.contains(&format!(" {of} "));
             laws = LAWS.iter().find(named).map(|(_, table)| *table);
         }
-        if let Some((row, _)) = line.split_once(" => ")
+        if line.ends_with('{')
+            && let Some((row, _)) = line.split_once(" => ")
             && let Some((law, name)) = row.split_once(": ")
             && is_word(law)
         {
@@ -73,20 +75,31 @@ fn read_tables(source: &str, tables: &mut BTreeMap<String, Vec<(String, String)>
             tables.entry(name.to_owned()).or_default();
             table = Some(name.to_owned());
         } else if line.starts_with('}') {
-            table = None;
+            // What stands after `or` is of the same table.
+            table = table.filter(|_| line.ends_with('{'));
         } else if let (Some(name), Some((key, kind))) = (&table, line.split_once(": "))
-            && !line.starts_with(['/', '#', '$'])
+            && !line.starts_with(['/', '#', '$', '='])
         {
             let key = key.trim_start_matches("r#").to_owned();
-            let range = kind
-                .strip_suffix(';')
-                .and_then(|kind| kind.split_once(", "));
-            let kind = range.map_or(kind.trim_end_matches(','), |(kind, _)| kind);
-            let kind = kind.to_owned();
+            let kind = type_of(kind).to_owned();
             tables.get_mut(name).unwrap().push((key, kind));
         }
     }
     tables.retain(|_, keys| !keys.is_empty());
+}
+
+/// The type at the beginning of what a row says of a key.
+fn type_of(row: &str) -> &str {
+    let mut depth = 0;
+    let end = row.char_indices().find(|&(_, letter)| {
+        match letter {
+            '<' => depth += 1,
+            '>' => depth -= 1,
+            _ => {}
+        }
+        depth == 0 && [' ', ',', ';'].contains(&letter)
+    });
+    end.map_or(row, |(end, _)| &row[..end])
 }
 
 fn walk(

@@ -222,8 +222,17 @@ fn change(text: &str, other: &str, random: &mut Random) -> String {
 
 #[test]
 fn no_text_makes_the_reader_panic() {
-    let budget = Budget::new(3000);
-    let mut random = random(&budget);
+    read(&Budget::new(1000));
+}
+
+#[test]
+#[ignore = "slow: more of the same"]
+fn no_text_of_many_makes_the_reader_panic() {
+    read(&Budget::new(10_000));
+}
+
+fn read(budget: &Budget) {
+    let mut random = random(budget);
     let (mut met, mut seeds) = (Met::default(), seeds());
     let (begun, mut done) = (seeds.len(), 0);
     while done < begun || budget.allows(done) {

@@ -33,6 +33,7 @@ pub fn inline(text: &str) -> Case {
 
 /// A case at time zero.
 pub fn start(case: Case) -> Simulation {
+    crate::common::threads::stay_alone();
     Simulation::start(case, &Comm::solo()).expect("the case starts")
 }
 
