@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn unequal_particles_take_more_work() {
         let work = |name: &str, set: &[&str]| {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs");
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../inputs");
             let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
             work_of_unequal(&input::load(&path.join(name), &set).unwrap())
         };

@@ -204,7 +204,7 @@ mod tests {
     use populate::visits;
 
     fn quarter(spacing: &str) -> Case {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../inputs/quarter-impact");
         input::load(&path, &[format!("spacing={spacing}")]).unwrap()
     }
 

@@ -118,7 +118,7 @@ mod tests {
 
     fn steps(name: &str, set: &[&str]) -> [f64; 2] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("inputs")
+            .join("../../inputs")
             .join(name);
         let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
         let case = input::load(&path, &set).unwrap();
@@ -149,7 +149,7 @@ mod tests {
     /// A ball that comes from farther away flies first, in long steps.
     #[test]
     fn nothing_is_shocked_before_bodies_meet() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../inputs/quarter-impact");
         let case = input::load(&path, &[]).unwrap();
         let ([begin, until], _) = shock(&case, &approaches(&case)).unwrap();
         let mut far = case.clone();

@@ -238,7 +238,7 @@ mod tests {
     use crate::preflight::approaches;
 
     fn quarter(set: &[&str]) -> Case {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("inputs/quarter-impact");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../inputs/quarter-impact");
         let set: Vec<String> = set.iter().map(|&set| set.to_owned()).collect();
         input::load(&path, &set).unwrap()
     }

@@ -9,7 +9,7 @@ use super::cluster::Cluster;
 use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
 use super::kinds::Kinds;
 use super::motion::MotionRecord;
-use super::near::{INFLATION, near_box, push_places};
+use super::near::{INFLATION, near_box, push_places, splat_each};
 use super::pairs::PairList;
 use super::sequence::{Eight, Sequence};
 use model::ContactClass;
@@ -282,7 +282,7 @@ impl ForeignChunk {
     ) {
         candidates.reach(receiver.kind, table);
         let classes = &table.class[receiver.kind * table.kinds.count()..];
-        let here = receiver.position.map(V::splat);
+        let here = splat_each::<V>(*receiver.position);
         let eights = candidates.positions.iter().zip(&candidates.reach2);
         for (n, (positions, reach2)) in eights.enumerate() {
             let gap = |a: usize| here[a].sub(V::load(&positions[a]));

@@ -7,6 +7,12 @@ use numerics::lanes::{LANES, Lanes};
 /// never drops a pair with a contribution.
 pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
+/// Three values, each in all lanes. The `map` of an array may be compiled apart from its caller, without its instructions.
+#[inline(always)]
+pub(super) fn splat_each<V: Lanes>([x, y, z]: [f64; 3]) -> [V; 3] {
+    [V::splat(x), V::splat(y), V::splat(z)]
+}
+
 /// Calls `found` with each eight images of a group that stand by a box, the index of the first, a bit for
 /// each of them that is nearer than `range` (m), which is nowhere more than `far`, and the squares of their
 /// distances (m²).
@@ -21,7 +27,7 @@ pub(super) fn near_box<V: Lanes>(
     range: impl Fn(&Eight) -> V,
     mut found: impl FnMut(usize, u8, &Eight, V),
 ) {
-    let (low, high) = (lower.map(V::splat), upper.map(V::splat));
+    let (low, high) = (splat_each::<V>(*lower), splat_each::<V>(*upper));
     let along = sequence.along(group);
     let (from, to) = (lower[along] - far, upper[along] + far);
     sequence.columns_near(group, lower, upper, far, |[a, b], column| {

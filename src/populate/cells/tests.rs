@@ -133,10 +133,7 @@ fn bytes(x: &[[f64; 3]], dimension: usize) -> Vec<u8> {
 fn tiles_are_relaxed_by_the_rules_of_the_fit() {
     for dimension in [2, 3] {
         let made = bytes(&made(dimension), dimension);
-        let path = format!(
-            "{}/src/populate/cells/glass{dimension}.bin",
-            env!("CARGO_MANIFEST_DIR")
-        );
+        let path = format!("{}/cells/glass{dimension}.bin", env!("CARGO_MANIFEST_DIR"));
         if std::env::var_os("WHIPPLE_WRITE_TILES").is_some() {
             std::fs::write(&path, &made).unwrap();
         }
