@@ -15,7 +15,7 @@ tier=${1:-first}
 build=(--locked --workspace)
 log=target/test.log
 # Tests of the second tier that no tenth may have: each takes more than three minutes.
-too_long='LONG'
+too_long='a_kill_at_any_call|contact_lab'
 
 # The tenth of this commit.
 tenth() {
