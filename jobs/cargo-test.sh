@@ -29,18 +29,6 @@ share() {
     grep -vE "$too_long" | sort | awk -v tenth="$1" 'NR % 10 == tenth % 10' || true
 }
 
-# Runs write and sync many small files: in memory where there is room and programs may start.
-if [ -z "${TMPDIR:-}" ] && place=$(mktemp -d /dev/shm/whipple-tests.XXXXXX 2>/dev/null); then
-    trap 'rm -rf "$place"' EXIT
-    printf '#!/bin/sh\n' >"$place/starts"
-    chmod +x "$place/starts"
-    if [ "$(df --output=avail "$place" | tail -n 1)" -gt 4000000 ] && "$place/starts" 2>/dev/null; then
-        export TMPDIR=$place
-    fi
-fi
-# All ranks are on this machine: to look for a fast network costs each launch .2 s.
-export OMPI_MCA_pml=${OMPI_MCA_pml-ob1}
-
 mkdir -p target
 code=0
 if cargo nextest --version >/dev/null 2>&1; then
