@@ -36,6 +36,8 @@ if cargo nextest --version >/dev/null 2>&1; then
         cargo nextest run "${build[@]}" --run-ignored only --final-status-level pass || code=$?
         exit "$code"
     fi
+    # The one crate whose documentation has an example; nextest runs none.
+    cargo test --locked -p whipple-numerics --doc
     if [ "$tier" != --rotating ]; then
         cargo nextest run "${build[@]}" || code=$?
         exit "$code"

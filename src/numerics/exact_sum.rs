@@ -8,7 +8,7 @@
 //! Ranks are joined by a plain integer sum of limbs:
 //!
 //! ```
-//! use whipple::numerics::exact_sum::ExactSum;
+//! use numerics::exact_sum::ExactSum;
 //!
 //! let mut here = ExactSum::new();
 //! let mut there = ExactSum::new();
