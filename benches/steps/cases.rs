@@ -155,7 +155,7 @@ pub fn table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use populate;
+    
 
     #[test]
     fn cases_have_as_many_particles_as_they_say() {

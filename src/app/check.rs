@@ -19,7 +19,6 @@ use files::run::say::{counted, say, warn};
 use model::readable::{short, shown};
 use model::{Body, Case, MeasureKind, Quantity, cube};
 use plot::{self, PlotError};
-use populate;
 
 /// Check a case without running it: particles by body, memory, expected steps
 ///

@@ -4,7 +4,6 @@ use std::ffi::OsString;
 
 use clap::error::ErrorKind;
 
-use comm;
 use files::output::{VERSION, commit, h5};
 use numerics::dispatch::{Instructions, available, instructions};
 

@@ -235,7 +235,7 @@ impl Comm {
         match &self.transport {
             Transport::Solo => receives.copy_from_slice(sends),
             Transport::Mpi(world) => {
-                waiting(|| world.all_to_all_into(sends, receives.as_mut_slice()))
+                waiting(|| world.all_to_all_into(sends, receives.as_mut_slice()));
             }
             Transport::Virtual(rank) => rank.all_to_all(sends, receives),
         }

@@ -8,7 +8,6 @@ use comm::Comm;
 use engine::step::Simulation;
 use files::preflight::{approaches, beginning, warnings};
 use model::{Case, Vec3};
-use populate;
 
 /// A copper block of 6 × 5 × 4 mm about (1, 2, 3) mm.
 fn block(spacing: &str, more: &str) -> Case {

@@ -8,7 +8,6 @@ use engine::step::Simulation;
 use model::{Axis, Body, Case, LatticeKind, Shape, Vec3};
 use numerics::vector::norm;
 use particles::ParticleStore;
-use populate;
 
 const SPACING: f64 = 1e-5;
 

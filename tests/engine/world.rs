@@ -9,7 +9,6 @@ use model::{
 use numerics::kernel::Kernel;
 use particles::neighbours::MotionRecord;
 use particles::{Image, ParticleStore};
-use populate;
 
 use crate::common::{body, case};
 

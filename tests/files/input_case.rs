@@ -6,7 +6,6 @@ use material::{Strength, library};
 use model::{
     Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
 };
-use populate;
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
     let path = crate::project::root().join(format!("inputs/{name}/case.toml"));

@@ -10,7 +10,6 @@ use crate::surfaces::{
 use files::input::load;
 use files::preflight::{approaches, warnings};
 use model::{Axis, Case, Shape, SymmetryPlane, Vec3};
-use populate;
 
 /// A case in a folder of a body at .1 mm.
 fn written(folder: &Path, body: &str, more: &str) -> std::path::PathBuf {

@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 
 use files::input::parse;
 use model::{Case, SymmetryPlane, Vec3};
-use populate;
 
 fn case(dimension: usize, body: &str, more: &str) -> Case {
     let text = format!(

@@ -8,7 +8,6 @@ use files::output::unit_of_model;
 use files::plan::{self, Files};
 use files::preflight::{Approach, memory};
 use model::{Body, Case};
-use populate;
 
 /// The whole report, in SI units.
 pub(super) fn document(

@@ -36,7 +36,7 @@ pub fn beginning(case: &Case, body: &Body) -> Option<String> {
     }
     match body.initial.heat {
         Heat::Temperature(_) => {
-            words.push(format!("temperature {}", ranges.temperature.words("K")))
+            words.push(format!("temperature {}", ranges.temperature.words("K")));
         }
         Heat::Energy(_) => words.push(format!("specific energy {}", ranges.energy.words("J/kg"))),
         Heat::Reference if body.holds(Quantity::SpecificEnergy) => {

@@ -50,6 +50,7 @@ pub struct CommonArgs {
 
 impl CommonArgs {
     /// Verbosity of this process.
+    #[must_use] 
     pub fn verbosity(&self) -> Verbosity {
         Verbosity {
             quiet: self.quiet,

@@ -2,7 +2,6 @@
 
 use crate::snapshots::plane::Plane;
 use model::{Axis, Body, Case, RigidSurface, SurfaceShape};
-use populate;
 
 /// Blank border about the model, over its longest side.
 const BORDER: f64 = 0.06;
