@@ -43,17 +43,6 @@ pub struct ActiveMut<'a> {
     pub inactive: &'a Inactive,
 }
 
-impl ActiveMut<'_> {
-    /// The same for those who only read.
-    #[must_use]
-    pub fn shared(&self) -> Active<'_> {
-        Active {
-            particles: self.particles,
-            inactive: self.inactive,
-        }
-    }
-}
-
 impl Active<'_> {
     /// Number of owned particles that are active.
     #[must_use]

@@ -150,7 +150,7 @@ impl ParticleStore {
         self.rearrange(order, scratch);
     }
 
-    /// [`Self::keep`] of an order in which all that sleeps stays where it is.
+    /// [`Self::keep`] of an order in which inactive particles stay where they are.
     ///
     /// # Panics
     /// If `scratch` is too short.

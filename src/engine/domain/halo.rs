@@ -85,8 +85,12 @@ impl Halo {
         active: ActiveMut,
         reach: impl Fn(&ParticleStore, usize) -> f64 + Sync,
     ) {
-        active.particles.resize_halo(0);
-        let active = active.shared();
+        let (particles, inactive) = (active.particles, active.inactive);
+        particles.resize_halo(0);
+        let active = Active {
+            particles,
+            inactive,
+        };
         self.rank = comm.rank();
         self.find_extent(active.particles, &reach);
         self.find_peers(comm, reaches);

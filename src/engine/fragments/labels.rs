@@ -34,7 +34,7 @@ pub struct Labels {
     members: Members,
     pub(super) merger: Merger,
     /// Labels of particles on their own rank.
-    own_labels: Vec<u64>,
+    sent: Vec<u64>,
     collector: Collector,
 }
 
@@ -79,15 +79,11 @@ impl Labels {
         };
         let place = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
         let known = &*sets;
-        self.own_labels.resize(ids.len(), 0);
-        let labels = self
-            .own_labels
-            .par_iter_mut()
-            .enumerate()
-            .with_min_len(SHARE);
+        self.sent.resize(ids.len(), 0);
+        let labels = self.sent.par_iter_mut().enumerate().with_min_len(SHARE);
         labels.for_each(|(i, label)| *label = known.set(place(i)).label);
-        halo.exchange_values(comm, &mut self.own_labels);
-        let (own_labels, collector) = (&self.own_labels, &mut self.collector);
+        halo.exchange_values(comm, &mut self.sent);
+        let (sent, collector) = (&self.sent, &mut self.collector);
         // A root is the smallest of its set: halo particles that nothing here is linked with are by
         // themselves.
         let linked = |i: usize| Some(known.set(place(owned + i))).filter(|set| set.count > 0);
@@ -97,7 +93,7 @@ impl Labels {
         collector.extend(rows, halo, |i| {
             linked(i).map(|set| Row {
                 label: set.label,
-                other: own_labels[owned + i],
+                other: sent[owned + i],
                 marks: 0,
                 count: 0,
             })
@@ -138,7 +134,7 @@ impl Labels {
     pub fn memory(&self) -> usize {
         self.members.sets.memory()
             + self.merger.memory()
-            + 8 * self.own_labels.capacity()
+            + 8 * self.sent.capacity()
             + self.collector.memory()
             + size_of::<(u32, u64)>() * self.members.crossing.capacity()
     }

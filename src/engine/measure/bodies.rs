@@ -196,7 +196,7 @@ impl Part {
     }
 }
 
-/// What the particles of a block that sleeps come to, all of one body.
+/// Sums and extremes of the particles of an inactive block, all of one body.
 #[derive(Debug)]
 struct Kept {
     body: usize,
@@ -204,7 +204,7 @@ struct Kept {
     extremes: [f64; EXTREMES],
 }
 
-/// What bodies come to in what sleeps, kept from one row to the next.
+/// Sums and extremes of inactive particles of bodies, kept from one row to the next.
 #[derive(Debug, Default)]
 pub struct KeptBodies(KeptBlocks<Kept>);
 

@@ -74,7 +74,7 @@ struct Part {
     label: u64,
 }
 
-/// What a search has found, and where it has looked: what decides which particles rest far from moving ones.
+/// Results of a search, by which particles rest far from moving ones.
 pub(super) struct Surroundings<'a> {
     pub lists: &'a Lists,
     /// Longest range of contact (m).
@@ -85,7 +85,7 @@ pub(super) struct Surroundings<'a> {
     pub labels: Option<&'a mut Labels>,
 }
 
-/// For what rounding takes of ranges.
+/// Factor of ranges, with room for rounding.
 const ROOM: f64 = 1.0 + 1e-6;
 
 /// Work counted for an inactive particle, in neighbours of the pair sums.

@@ -46,7 +46,7 @@ pub enum StepError {
         step: u64,
         /// Identity of the particle.
         id: u64,
-        /// What is wrong.
+        /// Kind of the failure.
         kind: NumericalFailure,
         /// The same in words.
         what: String,

@@ -52,7 +52,7 @@ pub struct Timers {
     pub updates: u64,
     busy: f64,
     last: Instant,
-    /// What this rank had waited for others by then.
+    /// Time that this rank had waited for others by then.
     waited: Duration,
 }
 

@@ -140,7 +140,7 @@ impl Vectorised for Build<'_> {
 
 /// Clusters in a row that are looked at together, whether they rest.
 const RUN: usize = 8;
-/// How long they are together at most, in ranges of lists: columns have gaps where some sleep.
+/// How long they are together at most, in ranges of lists: columns have gaps where some are inactive.
 const LONG: f64 = 5.0;
 
 /// Such runs of clusters, no longer (m) than that along any axis if there is more than one in them.

@@ -6,8 +6,8 @@ use super::near::INFLATION;
 use super::sequence::Sequence;
 use numerics::lanes::{LANES, Lanes};
 
-/// What keeps those awake that are around eight images.
-const AWAKE: u64 = u64::from_le_bytes([HALO | MOVING | ACTIVE; LANES]);
+/// Marks of images that keep others around them from resting.
+const NOT_RESTING: u64 = u64::from_le_bytes([HALO | MOVING | ACTIVE; LANES]);
 
 /// Looks around clusters of a group.
 pub(super) struct Watch<'a> {
@@ -61,22 +61,22 @@ impl Watch<'_> {
         let (sequence, group) = (self.sequence, self.group);
         let along = sequence.along(group);
         let (from, to) = (lower[along] - far, upper[along] + far);
-        let mut awake = 0;
+        let mut marks = 0;
         sequence.columns_near(group, lower, upper, far, |[a, b], column| {
-            if awake != 0 {
+            if marks != 0 {
                 return;
             }
             let hint = &mut self.hints[(a & 7) << 3 | b & 7];
             *hint = sequence.seek::<V>(group, &column, from, *hint);
             for eight in sequence.eights(*hint..column.end) {
-                if awake != 0 || eight.coordinates[along][0] > to {
+                if marks != 0 || eight.coordinates[along][0] > to {
                     break;
                 }
                 // Also of those behind the end, to be on the safe side.
-                awake |= u64::from_le_bytes(*eight.special) & AWAKE;
+                marks |= u64::from_le_bytes(*eight.special) & NOT_RESTING;
             }
         });
-        awake == 0
+        marks == 0
     }
 
     /// Whether no image of a group is near a box (m), by no more than `far` (m) along each axis.
