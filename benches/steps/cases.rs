@@ -155,7 +155,6 @@ pub fn table() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    
 
     #[test]
     fn cases_have_as_many_particles_as_they_say() {

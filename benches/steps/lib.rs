@@ -99,7 +99,7 @@ impl BenchArgs {
 }
 
 /// Runs the command; returns the exit code.
-#[must_use] 
+#[must_use]
 pub fn run(args: &BenchArgs) -> u8 {
     if launch::by_mpi() || args.threads.is_some() || args.messages {
         return one_configuration(args);

@@ -123,7 +123,7 @@ enum Map {
 
 impl Scale {
     /// From the paper at a value to black at a higher one, `above` which some may lie.
-    #[must_use] 
+    #[must_use]
     pub fn grey([low, high]: [f64; 2], above: bool) -> Self {
         Self {
             low,
@@ -164,7 +164,7 @@ impl Scale {
     }
 
     /// The colour of a value.
-    #[must_use] 
+    #[must_use]
     pub fn colour(&self, value: f64) -> Rgb {
         if !value.is_finite() {
             return NOT_FINITE;

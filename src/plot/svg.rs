@@ -209,7 +209,7 @@ fn write_escaped(body: &mut String, text: &str) {
 }
 
 /// `#0072b2`.
-#[must_use] 
+#[must_use]
 pub fn hex([red, green, blue]: Rgb) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }

@@ -6,7 +6,7 @@ pub use model::readable::{Readable, fixed, superscript};
 use model::units;
 
 /// The number of decimals that shows about three digits of `largest`.
-#[must_use] 
+#[must_use]
 pub fn decimals(largest: f64) -> usize {
     match largest.abs() {
         x if x >= 100.0 => 0,

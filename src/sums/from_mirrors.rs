@@ -13,7 +13,7 @@ pub struct FromMirrors {
 
 impl FromMirrors {
     /// Bytes allocated.
-    #[must_use] 
+    #[must_use]
     pub fn memory(&self) -> usize {
         4 * self.indices.capacity() + size_of::<MirrorForce>() * self.forces.capacity()
     }

@@ -16,7 +16,7 @@ pub enum Scale {
 
 impl Scale {
     /// Of a kernel and the smoothing length (m) of all pairs, if they share one.
-    #[must_use] 
+    #[must_use]
     pub fn new(kernel: &Kernel, constant: Option<f64>) -> Self {
         match (constant, kernel.dimension()) {
             (Some(h), _) => Self::Constant(ConstantScale::new(kernel, h)),

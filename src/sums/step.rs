@@ -25,7 +25,7 @@ pub enum Side {
 impl Side {
     /// Whether a cluster with or without halo particles among its neighbours is of this side.
     #[inline(always)]
-    #[must_use] 
+    #[must_use]
     pub fn takes(self, halo: bool) -> bool {
         halo == (self == Self::Outer)
     }

@@ -112,7 +112,7 @@ pub fn shortage(comm: &Comm, case: &Case) -> Option<String> {
 }
 
 /// A number of bytes with three digits or so and a unit.
-#[must_use] 
+#[must_use]
 pub fn in_words(bytes: f64) -> String {
     let (value, unit) = match bytes {
         b if b < 999.5 => return format!("{b:.0} bytes"),

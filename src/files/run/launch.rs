@@ -65,7 +65,7 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
 }
 
 /// Returns true if this process was started by an MPI launcher.
-#[must_use] 
+#[must_use]
 pub fn by_mpi() -> bool {
     let launched = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_SIZE"];
     launched.iter().any(|name| std::env::var_os(name).is_some())

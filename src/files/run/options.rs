@@ -50,7 +50,7 @@ pub struct CommonArgs {
 
 impl CommonArgs {
     /// Verbosity of this process.
-    #[must_use] 
+    #[must_use]
     pub fn verbosity(&self) -> Verbosity {
         Verbosity {
             quiet: self.quiet,

@@ -42,7 +42,7 @@ pub fn state_of(restored: &Restored) -> Result<RunState, String> {
 
 /// Sets up a restart, which changes nothing that cannot be undone, and steps to the end; returns the
 /// exit code. Another folder than the run's own is cleared if `force`. Collective.
-#[must_use] 
+#[must_use]
 pub fn go_on(
     launch: &Launch,
     args: &CommonArgs,

@@ -48,7 +48,7 @@ impl Verbosity {
 }
 
 /// A line as a JSON object: `time` (UTC), `level`, `message` and `fields`.
-#[must_use] 
+#[must_use]
 pub fn event(level: &str, message: &str, fields: &Map<String, Value>) -> String {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     let time = moment(since.unwrap_or_default());
@@ -57,7 +57,7 @@ pub fn event(level: &str, message: &str, fields: &Map<String, Value>) -> String 
 }
 
 /// A JSON document of several lines.
-#[must_use] 
+#[must_use]
 pub fn document(value: &Value) -> String {
     plain(&format!("{value:#}"))
 }

@@ -53,7 +53,7 @@ impl Cluster {
     }
 
     /// The receivers without repetitions.
-    #[must_use] 
+    #[must_use]
     pub fn valid(&self) -> &[u32] {
         &self.receivers[..self.lanes]
     }

@@ -50,7 +50,7 @@ impl Cell {
 }
 
 /// The weight of a particle at a squared distance in units of its size.
-#[must_use] 
+#[must_use]
 pub fn weight(distance: f64) -> f64 {
     let rest = ((2.0 - distance) / 1.75).max(0.0);
     (rest * rest) * (rest * rest)

@@ -16,7 +16,7 @@ pub struct Bodies {
 
 impl Bodies {
     /// Of no snapshot yet, of which those of some names will be drawn, or all.
-    #[must_use] 
+    #[must_use]
     pub fn new(chosen: &[String]) -> Self {
         Self {
             chosen: chosen.to_vec(),
@@ -41,13 +41,13 @@ impl Bodies {
     }
 
     /// `true` if the body of a number is drawn.
-    #[must_use] 
+    #[must_use]
     pub fn shows(&self, number: usize) -> bool {
         self.chosen.is_empty() || self.chosen.contains(&self.names[number])
     }
 
     /// Names of those that are drawn, if not all are.
-    #[must_use] 
+    #[must_use]
     pub fn alone(&self) -> Option<&[String]> {
         (!self.chosen.is_empty()).then_some(&self.chosen[..])
     }

@@ -54,6 +54,10 @@ enum Pick {
 impl Drawn {
     /// Finds what `name` means in a snapshot: `body`, a field, or `FIELD.COMPONENT`; `stress` and
     /// `material_stress` are made from their parts.
+    ///
+    /// # Errors
+    /// [`PlotError::Field`] or [`PlotError::Component`] if the snapshot has none of that name, [`PlotError::Read`] if it
+    /// cannot be read.
     pub fn find(snapshot: &Snapshot, name: &str) -> Result<Self, PlotError> {
         match name {
             "body" => Ok(Self::Body),
@@ -95,6 +99,9 @@ impl Drawn {
     }
 
     /// The drawn number of some rows; the body's index for [`Drawn::Body`] is left to the caller.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the rows cannot be read.
     pub fn values(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {
         match self {
             Self::Body => Ok(vec![0.0; rows.len()]),
@@ -104,6 +111,9 @@ impl Drawn {
 
     /// `true` for rows that have it: none that is frozen, but in a picture of just that; if there
     /// are stress points, these or the particles that have mass.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the rows cannot be read.
     pub fn bearers(&self, snapshot: &Snapshot, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
         let active = match self {
             Self::Field(field) if field.dataset == FROZEN => vec![true; rows.len()],

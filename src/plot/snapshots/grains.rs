@@ -40,7 +40,7 @@ pub struct Selection {
 
 impl Selection {
     /// The planes at which a snapshot is reflected.
-    #[must_use] 
+    #[must_use]
     pub fn mirrors(&self, snapshot: &Snapshot) -> Mirrors {
         let planes = if self.mirror {
             snapshot.symmetry.clone()
@@ -51,7 +51,7 @@ impl Selection {
     }
 
     /// `"mirrored at x = 0 and y = 0"`, and the bodies that alone are drawn, if not all.
-    #[must_use] 
+    #[must_use]
     pub fn caption(&self, snapshot: &Snapshot) -> String {
         let mirrors = self.mirrors(snapshot);
         let planes = mirrors

@@ -48,6 +48,9 @@ pub const FROZEN: &str = "frozen";
 
 impl Snapshot {
     /// Opens a snapshot and reads what it says of its case.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if it cannot be read, [`PlotError::Snapshot`] if what it says makes no sense.
     pub fn open(path: &Path) -> Result<Self, PlotError> {
         let file = SnapshotFile::open(path)?;
         let damaged = |reason: String| PlotError::Snapshot {
@@ -121,6 +124,9 @@ impl Snapshot {
     }
 
     /// The body of each particle of some rows, as indices into `bodies`.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the rows cannot be read, [`PlotError::Snapshot`] if one is of no body.
     pub fn body_of(&self, rows: Range<usize>) -> Result<Vec<usize>, PlotError> {
         let values = self.file.scalar("body", 0, rows)?;
         let index = |value: f64| {
@@ -144,6 +150,9 @@ impl Snapshot {
 
     /// `true` for rows that are still part of the model: those that are not frozen. A picture of a
     /// run that freezes particles is that of one which removes them.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn active(&self, rows: Range<usize>) -> Result<Vec<bool>, PlotError> {
         if !self.freezes {
             return Ok(vec![true; rows.len()]);
@@ -153,6 +162,9 @@ impl Snapshot {
     }
 
     /// Smallest, largest and mean finite coordinate of what is not frozen along each axis (m).
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn extent(&self) -> Result<[Extent; 3], PlotError> {
         let mut extents = [Extent::default(); 3];
         for rows in self.chunks() {
@@ -168,6 +180,9 @@ impl Snapshot {
     }
 
     /// Spacing of some particles at the start (m), `(m/ρ₀)^(1/d)` where it varies within bodies.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn first_sizes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<f64>, PlotError> {
         let (Some(first), true) = (&self.densities, self.coarsest != self.spacings) else {
             return Ok(bodies.iter().map(|&body| self.spacings[body]).collect());
@@ -185,6 +200,9 @@ impl Snapshot {
     /// Size of some particles: the spacing of the volume that they have now, `(m/ρ)^(1/d)` (m),
     /// from a quarter of their first spacing to [`LARGEST`] of it. Where the snapshot does not hold
     /// the density, or it is NaN, the first spacing itself.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn sizes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<f64>, PlotError> {
         let spacings = self.first_sizes(rows.clone(), bodies)?;
         let (Some(first), true) = (&self.densities, self.has("density")?) else {
@@ -209,6 +227,9 @@ impl Snapshot {
 
     /// Masses of some particles (kg; per metre or square metre of a flat model): those that the
     /// snapshot holds, else ρ₀ Δp^d.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn masses(&self, rows: Range<usize>) -> Result<Vec<f64>, PlotError> {
         if self.has("mass")? {
             return Ok(self.file.scalar("mass", 0, rows)?);
@@ -223,6 +244,9 @@ impl Snapshot {
     }
 
     /// The position and motion of each body.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn movers(&self) -> Result<Vec<Mover>, PlotError> {
         let mut movers = vec![Mover::default(); self.bodies.len()];
         let moves = self.has("velocity")?;
@@ -260,6 +284,9 @@ impl Snapshot {
     }
 
     /// The coordinate of the particle that lies nearest to a position along an axis (m).
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn nearest(&self, axis: Axis, position: f64) -> Result<Option<f64>, PlotError> {
         let distance = |x: &f64| (x - position).abs();
         let mut nearest: Option<f64> = None;
@@ -277,6 +304,9 @@ impl Snapshot {
     }
 
     /// `true` if the snapshot holds a field.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn has(&self, field: &str) -> Result<bool, PlotError> {
         Ok(self.file.names()?.iter().any(|name| name == field))
     }

@@ -73,7 +73,7 @@ impl Absent {
     }
 }
 
-/// Where internal schemas hold [`Absent::words`] of a key; the value is its `default`.
+/// Where internal schemas hold the words of absence of a key; the value is its `default`.
 pub const ABSENT: &str = "absent";
 
 impl Key {
