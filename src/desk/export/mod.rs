@@ -1,6 +1,6 @@
 //! Exports: snapshots in the formats of other programs.
 //!
-//! A [`Frame`] is a snapshot with the columns that are asked for, and with images behind symmetry
+//! A frame (`frame.rs`) is a snapshot with the columns that are asked for, and with images behind symmetry
 //! planes if wanted. Each format is a file that writes frames piece by piece: only surfaces need a
 //! whole snapshot in memory. Numbers are those of the snapshot: their bits in binary files, the
 //! fewest digits that give them back in texts. SI units.

@@ -2,7 +2,7 @@
 //!
 //! A page opens from disk and asks the network for nothing: pictures, particles, style and script
 //! are in it, and a policy in its head forbids all else. Texts from files are never markup
-//! ([`html::Html`]). Missing data are named in their place, so that old and damaged runs have pages
+//! (`html.rs`). Missing data are named in their place, so that old and damaged runs have pages
 //! too. The same run gives the same bytes.
 
 #![expect(

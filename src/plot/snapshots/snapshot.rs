@@ -198,7 +198,7 @@ impl Snapshot {
     }
 
     /// Size of some particles: the spacing of the volume that they have now, `(m/ρ)^(1/d)` (m),
-    /// from a quarter of their first spacing to [`LARGEST`] of it. Where the snapshot does not hold
+    /// from a quarter of their first spacing to four times that. Where the snapshot does not hold
     /// the density, or it is NaN, the first spacing itself.
     ///
     /// # Errors
