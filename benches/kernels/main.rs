@@ -136,7 +136,7 @@ fn contact(criterion: &mut Criterion) {
     });
     for (index, neighbours) in pairs() {
         let fraction = overlap::fraction(&scene.contact(&table), index, neighbours, 0.0);
-        let i = scene.sequence.images()[index as usize].base();
+        let i = scene.sequence.images()[index as usize].slot();
         scene.particles.foreign_fraction[i] = fraction.fraction;
         scene.particles.contact_excess[i] = fraction.excess;
         scene.particles.contact_modulus[i] = fraction.modulus;

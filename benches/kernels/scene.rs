@@ -84,7 +84,7 @@ impl Scene {
         scene.sort();
         scene.list();
         let sorted = scene.sequence.images().iter();
-        let motions = sorted.map(|image| motion(&scene.particles.position[image.base()]));
+        let motions = sorted.map(|image| motion(&scene.particles.position[image.slot()]));
         scene.motion = motions.collect();
         scene
     }
@@ -92,9 +92,9 @@ impl Scene {
     pub fn sort(&mut self) {
         let particles = &self.particles;
         let facts = |image: Image| ImageFacts {
-            position: particles.position[image.base()],
-            id: particles.id[image.base()],
-            group: particles.body[image.base()] as usize,
+            position: particles.position[image.slot()],
+            id: particles.id[image.slot()],
+            group: particles.body[image.slot()] as usize,
             smoothing_length: LENGTH,
         };
         let scratch = &mut self.scratch;
@@ -124,7 +124,7 @@ impl Scene {
 
     pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {
         let (images, body) = (self.sequence.images(), &self.particles.body);
-        let body_of = |index: u32| body[images[index as usize].base()] as usize;
+        let body_of = |index: u32| body[images[index as usize].slot()] as usize;
         foreign.build(
             &self.clusters,
             &self.sequence,

@@ -114,7 +114,7 @@ impl Material {
         from + thermal::opening(limited - at.pressure, at.dp_drho)
     }
 
-    /// Temperatures (K) of a batch whose pressure was limited from `untorn` (Pa): that of the matter, not of
+    /// Temperatures (K) of a batch whose pressure was limited from `before_failure` (Pa): that of the matter, not of
     /// the voids in it.
     #[inline(always)]
     fn torn_temperatures(
@@ -122,11 +122,11 @@ impl Material {
         thermal: &Thermal,
         [density, energy]: [&Lanes; 2],
         limited: &Lanes,
-        untorn: &Lanes,
+        before_failure: &Lanes,
     ) -> Lanes {
         let mut matter = *density;
         for k in 0..LANES {
-            if limited[k] > untorn[k] {
+            if limited[k] > before_failure[k] {
                 matter[k] = self.torn_density(density[k], energy[k], limited[k]);
             }
         }
@@ -170,7 +170,7 @@ impl Material {
         Some(self.torn_temperatures(thermal, state, &limited, &response.pressure))
     }
 
-    /// [`Self::temperatures`] of a batch right after its [update](Self::update), which has told `untorn`: most need
+    /// [`Self::temperatures`] of a batch right after its [update](Self::update), which has returned `before_failure`: most need
     /// no equation of state any more.
     #[inline(always)]
     #[must_use]
@@ -178,7 +178,7 @@ impl Material {
         &self,
         after: &PointBatch,
         plastic_energy: &Lanes,
-        untorn: &Lanes,
+        before_failure: &Lanes,
     ) -> Option<Lanes> {
         let thermal = self.thermal.as_ref()?;
         let energy = self.thermal_energies(&after.specific_energy, plastic_energy);
@@ -186,20 +186,25 @@ impl Material {
             return self.temperatures(&after.density, &energy, &after.damage);
         }
         let state = [&after.density, &energy];
-        if untorn.iter().all(|&pressure| pressure >= 0.0) {
+        if before_failure.iter().all(|&pressure| pressure >= 0.0) {
             // No tension that failure could limit.
             return Some(thermal.temperatures(state[0], state[1]));
         }
-        let limited = self.limited(state, &after.damage, untorn);
-        Some(self.torn_temperatures(thermal, state, &limited, untorn))
+        let limited = self.limited(state, &after.damage, before_failure);
+        Some(self.torn_temperatures(thermal, state, &limited, before_failure))
     }
 
     /// Pressures (Pa) of a batch after the largest tension, from those of the equation of state.
-    fn limited(&self, [density, energy]: [&Lanes; 2], damage: &Lanes, untorn: &Lanes) -> Lanes {
+    fn limited(
+        &self,
+        [density, energy]: [&Lanes; 2],
+        damage: &Lanes,
+        before_failure: &Lanes,
+    ) -> Lanes {
         let mut point = PointBatch {
             density: *density,
             specific_energy: *energy,
-            pressure: *untorn,
+            pressure: *before_failure,
             damage: *damage,
             ..PointBatch::ZERO
         };
@@ -261,7 +266,7 @@ impl Material {
         self.failure.limit_tension(batch);
         let moduli = [self.strength.shear_modulus(), self.eos.bulk_modulus(rho0)];
         let mut now = Conditions::new(dt, rho0, moduli);
-        now.manner = self.failure.manner;
+        now.options = self.failure.options;
         if ALL && self.needs_temperature() {
             self.set_temperatures(batch, &response, &mut now);
         }
@@ -278,19 +283,19 @@ impl Material {
         response.pressure
     }
 
-    /// Whether a law follows the temperature.
+    /// True if a law follows the temperature.
     #[must_use]
     pub fn needs_temperature(&self) -> bool {
         self.strength.needs_temperature() || self.failure.needs_temperature()
     }
 
-    /// Whether a law asks who and how large a particle is, or what plastic work it has taken.
+    /// True if a law asks who and how large a particle is, or what plastic work it has taken.
     #[must_use]
-    pub fn asks(&self) -> bool {
+    pub fn needs_particle(&self) -> bool {
         self.failure.asks_identity() || self.needs_temperature() && self.stored_share() > 0.0
     }
 
-    /// Whether a law needs the melting temperature of the thermal constants.
+    /// True if a law needs the melting temperature of the thermal constants.
     #[must_use]
     pub fn needs_melting(&self) -> bool {
         self.strength.needs_melting() || self.failure.needs_melting()

@@ -36,7 +36,7 @@ impl Rest {
         })
     }
 
-    /// Whether matter of this density (kg/m³), specific energy (J/kg) and deviatoric stress (Pa) is in it.
+    /// True if matter of this density (kg/m³), specific energy (J/kg) and deviatoric stress (Pa) is in it.
     #[inline(always)]
     #[must_use]
     pub fn holds(&self, density: f64, energy: f64, deviator: &[f64; 6]) -> bool {

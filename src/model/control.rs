@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::{Axis, Cadence, Region};
 
-/// Whether the smoothing length of the SPH sums follows the density. Contact always keeps the
+/// True if the smoothing length of the SPH sums follows the density. Contact always keeps the
 /// reference h₀.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SmoothingLength {
@@ -46,7 +46,7 @@ pub struct SphOptions {
     pub smoothing_length: SmoothingLength,
     /// Factor ε of the artificial stress; 0 for none.
     pub artificial_stress: f64,
-    /// Whether the Balsara switch limits the artificial viscosity.
+    /// True if the Balsara switch limits the artificial viscosity.
     pub balsara: bool,
     /// Coefficient `α_u` of the artificial conduction; 0 for none.
     pub conduction: f64,

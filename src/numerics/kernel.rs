@@ -142,7 +142,7 @@ pub struct PairKernel<V> {
 
 /// How the lanes get `h_ij` and what follows from it.
 pub trait PairScale: Copy + Sync {
-    /// Whether smoothing lengths differ.
+    /// True if smoothing lengths differ.
     const VARIABLE: bool;
 
     /// `h_ij` (m) of receivers of `h_i` and a neighbour of `h_j` (m).

@@ -40,7 +40,7 @@ impl FieldKind {
         }
     }
 
-    /// Whether the numbers are `f64`.
+    /// True if the numbers are `f64`.
     #[must_use]
     pub const fn is_real(self) -> bool {
         !matches!(self, Self::Id | Self::Index)

@@ -28,36 +28,36 @@ pub struct FieldInfo {
     pub output: Output,
     /// Options that have use for it; empty for a field of every case.
     pub owner: Owner,
-    /// Whether a frozen particle keeps it; all else of that is zero.
+    /// True if a frozen particle keeps it; all else of that is zero.
     pub kept: bool,
 }
 
 impl FieldInfo {
-    /// Whether a particle takes it along to another rank.
+    /// True if a particle takes it along to another rank.
     #[must_use]
     pub const fn leaves(&self) -> bool {
         !matches!(self.life, Life::Scratch)
     }
 
-    /// Whether a frozen particle keeps it.
+    /// True if a frozen particle keeps it.
     #[must_use]
     pub const fn is_kept(&self) -> bool {
         self.kept
     }
 
-    /// Whether it is in snapshots, by default or on demand.
+    /// True if it is in snapshots, by default or on demand.
     #[must_use]
     pub const fn is_shown(&self) -> bool {
         !matches!(self.output, Output::Never)
     }
 
-    /// Whether only some cases have use for it.
+    /// True if only some cases have use for it.
     #[must_use]
     pub const fn is_optional(&self) -> bool {
         !self.owner.is_empty()
     }
 
-    /// Whether a case without the options `unused` has use for it.
+    /// True if a case without the options `unused` has use for it.
     #[must_use]
     pub const fn is_held_without(&self, unused: Owner) -> bool {
         self.owner.is_empty() || !unused.contains(self.owner)
@@ -145,7 +145,7 @@ particle_fields! {
     peak_strain_rate: Scalar,             "1/s",    State,    -,              OnDemand, PEAK_STRAIN_RATE;
     /// When pressure first passed the threshold of arrival; zero before.
     arrival_time: Scalar,                 "s",      State,    -,              OnDemand, ARRIVAL;
-    /// Whether it carries a gauge (bit 0), and the moving regions that it began in (from bit 1 on).
+    /// True if it carries a gauge (bit 0), and the moving regions that it began in (from bit 1 on).
     measure_marks: Index,                 "",       State,    -,              Never,    CARRIERS;
     /// Witness planes that it is beyond: a set of bits, in the input's order.
     witness_sides: Index,                 "",       State,    -,              Never,    WITNESSES;
@@ -165,13 +165,13 @@ particle_fields! {
     slip: Vector,                         "m",      State,    -,              OnDemand, FRICTION;
     /// Tangential velocity against the other bodies.
     slip_rate: Vector,                    "m/s",    State,    -,              OnDemand, FRICTION;
-    /// Whether friction is kinetic (1) or static (0).
+    /// State of friction: kinetic (1) or static (0).
     sliding: Index,                       "",       State,    -,              OnDemand, FRICTION;
     /// Elastic tangential displacement against rigid surfaces, by which their friction holds.
     surface_slip: Vector,                 "m",      State,    -,              OnDemand, SURFACE_FRICTION;
     /// Tangential velocity against rigid surfaces.
     surface_slip_rate: Vector,            "m/s",    State,    -,              OnDemand, SURFACE_FRICTION;
-    /// Whether friction of rigid surfaces is kinetic (1) or static (0).
+    /// State of friction of rigid surfaces: kinetic (1) or static (0).
     surface_sliding: Index,               "",       State,    -,              OnDemand, SURFACE_FRICTION;
     /// Smallest id among the particles that it is connected with.
     part: Id,                             "",       State,    MOTION,            Default,  SELF_CONTACT;
@@ -183,7 +183,7 @@ particle_fields! {
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
     absorption: Scalar,                   "1/s",    State,    -,              OnDemand, ABSORBERS;
-    /// Whether it left the range of its state and stands still, outside of all sums (1).
+    /// True if it left the range of its state and stands still, outside of all sums (1).
     frozen: Index,                        "",       State,    -,              OnDemand, FREEZE;
     /// Mass of the material whose stress a stress point carries; zero for velocity particles.
     stress_mass: Scalar,                  "kg",     State,    MOTION,         OnDemand, STRESS_POINTS;

@@ -11,29 +11,29 @@ impl Image {
     /// Largest number of particles of a rank.
     pub const MAX_PARTICLES: usize = 1 << 29;
 
-    /// Image of particle `base` behind the planes whose axis bits are set in `code`.
+    /// Image of particle `slot` behind the planes whose axis bits are set in `mirror_mask`.
     #[inline]
     #[must_use]
-    pub fn new(base: usize, code: u8) -> Self {
-        debug_assert!(base < Self::MAX_PARTICLES && code < 8);
+    pub fn new(slot: usize, mirror_mask: u8) -> Self {
+        debug_assert!(slot < Self::MAX_PARTICLES && mirror_mask < 8);
         #[allow(
             clippy::cast_possible_truncation,
             reason = "checked when particles are counted"
         )]
-        Self(base as u32 | u32::from(code) << 29)
+        Self(slot as u32 | u32::from(mirror_mask) << 29)
     }
 
     /// Index in the store.
     #[inline]
     #[must_use]
-    pub fn base(self) -> usize {
+    pub fn slot(self) -> usize {
         self.0 as usize & (Self::MAX_PARTICLES - 1)
     }
 
     /// Bit a set: behind the symmetry plane normal to axis a.
     #[inline]
     #[must_use]
-    pub fn code(self) -> u8 {
+    pub fn mirror_mask(self) -> u8 {
         (self.0 >> 29) as u8
     }
 }

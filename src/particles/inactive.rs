@@ -52,20 +52,20 @@ impl Active<'_> {
 }
 
 impl Inactive {
-    /// Whether all parts are active.
+    /// True if all parts are active.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// Whether a part is inactive.
+    /// True if a part is inactive.
     #[inline(always)]
     #[must_use]
     pub fn has(&self, part: usize) -> bool {
         self.parts.get(part).copied().unwrap_or(false)
     }
 
-    /// Whether an owned particle is of an inactive part.
+    /// True if an owned particle is of an inactive part.
     #[inline(always)]
     #[must_use]
     pub fn holds(&self, particle: usize) -> bool {
@@ -96,7 +96,7 @@ impl Inactive {
         owned - PART * self.count
     }
 
-    /// Whether inactive parts begin at a place in the store, and end at another one.
+    /// Two flags: inactive parts begin at a place in the store, and end at another one.
     #[must_use]
     pub fn is_gap(&self, from: u32, to: u32) -> bool {
         let part = |place: u32| {

@@ -24,7 +24,7 @@ pub use image::{HaloImages, Image};
 pub use inactive::{Active, ActiveMut, Inactive, PART};
 pub use kept_blocks::{Block, KeptBlocks};
 pub use messages::copy_at_once;
-pub use mirrors::{MirrorForce, Mirrors, codes};
+pub use mirrors::{MirrorForce, Mirrors, mirror_masks};
 pub use point::MaterialPoints;
 pub use records::Records;
 pub use scatter::Scatter;

@@ -3,7 +3,7 @@
 use crate::{FieldInfo, Mirror, ParticleStore};
 use model::SymmetryPlane;
 
-/// The symmetry planes of a case, at most one for each axis. An image has a code: bit a is set
+/// The symmetry planes of a case, at most one for each axis. An image has a mirror mask: bit a is set
 /// if it stands behind the plane normal to axis a.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Mirrors {
@@ -39,16 +39,16 @@ impl Mirrors {
         self.planes[axis]
     }
 
-    /// Whether there are no planes.
+    /// True if there are no planes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.planes.iter().all(Option::is_none)
     }
 
-    /// The codes of all images of a particle, itself left out.
-    pub fn codes(&self) -> impl Iterator<Item = u8> {
+    /// The mirror masks of all images of a particle, itself left out.
+    pub fn masks(&self) -> impl Iterator<Item = u8> {
         let mask = (0..3).filter(|&axis| self.planes[axis].is_some());
-        codes(mask.fold(0, |mask, axis| mask | 1 << axis), false)
+        mirror_masks(mask.fold(0, |mask, axis| mask | 1 << axis), false)
     }
 
     /// Bits of the planes that a particle at `position` (m) stands within `reach` (m) of. Its
@@ -67,28 +67,28 @@ impl Mirrors {
         bits
     }
 
-    /// The image of a position under a code.
+    /// The image of a position under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_position(&self, position: &[f64; 3], code: u8) -> [f64; 3] {
-        if code == 0 {
+    pub fn reflect_position(&self, position: &[f64; 3], mirror_mask: u8) -> [f64; 3] {
+        if mirror_mask == 0 {
             return *position;
         }
         std::array::from_fn(|axis| match self.planes[axis] {
-            Some(plane) if code >> axis & 1 == 1 => 2.0 * plane - position[axis],
+            Some(plane) if mirror_mask >> axis & 1 == 1 => 2.0 * plane - position[axis],
             _ => position[axis],
         })
     }
 
-    /// The image of a vector under a code.
+    /// The image of a vector under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_vector(vector: &[f64; 3], code: u8) -> [f64; 3] {
-        if code == 0 {
+    pub fn reflect_vector(vector: &[f64; 3], mirror_mask: u8) -> [f64; 3] {
+        if mirror_mask == 0 {
             return *vector;
         }
         std::array::from_fn(|axis| {
-            if code >> axis & 1 == 1 {
+            if mirror_mask >> axis & 1 == 1 {
                 -vector[axis]
             } else {
                 vector[axis]
@@ -96,15 +96,15 @@ impl Mirrors {
         })
     }
 
-    /// The image of a symmetric tensor (xx yy zz xy xz yz) under a code.
+    /// The image of a symmetric tensor (xx yy zz xy xz yz) under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_symmetric(tensor: &[f64; 6], code: u8) -> [f64; 6] {
-        if code == 0 {
+    pub fn reflect_symmetric(tensor: &[f64; 6], mirror_mask: u8) -> [f64; 6] {
+        if mirror_mask == 0 {
             return *tensor;
         }
         let flip = |a: u8, b: u8| {
-            if (code >> a ^ code >> b) & 1 == 1 {
+            if (mirror_mask >> a ^ mirror_mask >> b) & 1 == 1 {
                 -1.0
             } else {
                 1.0
@@ -117,14 +117,14 @@ impl Mirrors {
         image
     }
 
-    /// The image of a tensor (row-major) under a code.
+    /// The image of a tensor (row-major) under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_tensor(tensor: &[f64; 9], code: u8) -> [f64; 9] {
+    pub fn reflect_tensor(tensor: &[f64; 9], mirror_mask: u8) -> [f64; 9] {
         let mut image = *tensor;
         for a in 0..3 {
             for b in 0..3 {
-                if (code >> a ^ code >> b) & 1 == 1 {
+                if (mirror_mask >> a ^ mirror_mask >> b) & 1 == 1 {
                     image[3 * a + b] *= -1.0;
                 }
             }
@@ -136,41 +136,41 @@ impl Mirrors {
     #[inline]
     #[must_use]
     pub fn beyond(&self, position: &[f64; 3]) -> u8 {
-        let mut code = 0;
+        let mut mirror_mask = 0;
         for axis in 0..3 {
             if let Some(plane) = self.planes[axis]
                 && position[axis] < plane
             {
-                code |= 1 << axis;
+                mirror_mask |= 1 << axis;
             }
         }
-        code
+        mirror_mask
     }
 
     /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
     /// the other way: both are the same material. All that a particle takes along when it changes
-    /// ranks, as it may next, is mirrored as the table of fields says. Returns the code, 0 for a
+    /// ranks, as it may next, is mirrored as the table of fields says. Returns the mirror mask, 0 for a
     /// particle that stays.
     pub fn fold(&self, particles: &mut ParticleStore, i: usize) -> u8 {
-        let code = self.beyond(&particles.position[i]);
-        if code != 0 {
+        let mirror_mask = self.beyond(&particles.position[i]);
+        if mirror_mask != 0 {
             for field in particles.held(FieldInfo::leaves) {
                 let size = field.kind.bytes();
                 let value = &mut particles.bytes_mut(field.id)[i * size..(i + 1) * size];
-                self.reflect(field.mirror, value, code);
+                self.reflect(field.mirror, value, mirror_mask);
             }
         }
-        code
+        mirror_mask
     }
 
-    /// Puts the image under a code in the place of what one particle holds in a field.
-    fn reflect(&self, rule: Mirror, value: &mut [u8], code: u8) {
+    /// Puts the image under a mirror mask in the place of what one particle holds in a field.
+    fn reflect(&self, rule: Mirror, value: &mut [u8], mirror_mask: u8) {
         match rule {
             Mirror::Same => {}
-            Mirror::Place => replace(value, |x| self.reflect_position(x, code)),
-            Mirror::Vector => replace(value, |v| Self::reflect_vector(v, code)),
-            Mirror::Symmetric => replace(value, |t| Self::reflect_symmetric(t, code)),
-            Mirror::Tensor => replace(value, |t| Self::reflect_tensor(t, code)),
+            Mirror::Place => replace(value, |x| self.reflect_position(x, mirror_mask)),
+            Mirror::Vector => replace(value, |v| Self::reflect_vector(v, mirror_mask)),
+            Mirror::Symmetric => replace(value, |t| Self::reflect_symmetric(t, mirror_mask)),
+            Mirror::Tensor => replace(value, |t| Self::reflect_tensor(t, mirror_mask)),
         }
     }
 }
@@ -181,9 +181,9 @@ fn replace<T: bytemuck::Pod>(value: &mut [u8], image: impl FnOnce(&T) -> T) {
     *value = image(value);
 }
 
-/// All nonzero subsets of the bits of `mask`, and zero first if `own`: codes of images.
-pub fn codes(mask: u8, own: bool) -> impl Iterator<Item = u8> {
-    (u8::from(!own)..8).filter(move |code| code & !mask == 0)
+/// All nonzero subsets of the bits of `mask`, and zero first if `own`: mirror masks of images.
+pub fn mirror_masks(mask: u8, own: bool) -> impl Iterator<Item = u8> {
+    (u8::from(!own)..8).filter(move |mirror_mask| mirror_mask & !mask == 0)
 }
 
 #[cfg(test)]
@@ -200,8 +200,8 @@ mod tests {
         let mirrors = Mirrors::new(&planes);
         let near = mirrors.near(&[0.1, 0.2, 0.0], 0.5);
         assert_eq!(near, 0b11);
-        assert_eq!(codes(near, true).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert_eq!(codes(near, false).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(mirror_masks(near, true).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert_eq!(mirror_masks(near, false).collect::<Vec<_>>(), [1, 2, 3]);
         assert_eq!(
             mirrors.reflect_position(&[0.1, 0.2, 0.3], 3),
             [-0.1, -0.2, 0.3]

@@ -71,13 +71,13 @@ macro_rules! points {
             pub heating: &'a [f64],
             /// Work of the step, for the balance between ranks.
             pub work: Scatter<'a, u32>,
-            /// Whether a material asks for what only some laws must know.
-            pub asks: bool,
+            /// True if a material asks for what only some laws must know.
+            pub needs_particle: bool,
             $( $(#[doc = $doc])+ pub $name: Scatter<'a, <point_lanes!($kind) as PointField>::Value>, )+
         }
 
         impl<'a> MaterialPoints<'a> {
-            /// Whether particle `i` has failed.
+            /// True if particle `i` has failed.
             ///
             /// # Safety
             /// No other thread may write to this particle.
@@ -91,7 +91,7 @@ macro_rules! points {
                 !self.damage.is_empty() && unsafe { *self.damage.slot(i) >= FAILED }
             }
 
-            /// What the particles `base` hold, in this order; zero for what a material answers.
+            /// What the particles `slot` hold, in this order; zero for what a material answers.
             ///
             /// # Safety
             /// No other thread may write to these particles.
@@ -100,11 +100,11 @@ macro_rules! points {
             /// If there is no such particle.
             #[inline(always)]
             #[must_use]
-            pub unsafe fn gather(&self, base: &[usize; LANES]) -> PointBatch {
+            pub unsafe fn gather(&self, slot: &[usize; LANES]) -> PointBatch {
                 let mut batch = PointBatch::ZERO;
-                for (k, &i) in base.iter().enumerate() {
+                for (k, &i) in slot.iter().enumerate() {
                     // SAFETY: by this function's contract; no reference outlives its statement.
-                    unsafe { $( gather!($role self.asks, batch.$name, k, self.$name, i); )+ }
+                    unsafe { $( gather!($role self.needs_particle, batch.$name, k, self.$name, i); )+ }
                 }
                 batch
             }
@@ -131,7 +131,7 @@ macro_rules! points {
                     body: &$d particles.body,
                     heating: &$d particles.d_specific_energy_dt,
                     work: $crate::Scatter::new(&mut $d particles.work),
-                    asks: false,
+                    needs_particle: false,
                     $( $name: $crate::Scatter::new(&mut $d particles.$name), )+
                 }
             };

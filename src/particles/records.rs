@@ -10,7 +10,7 @@ macro_rules! records {
         }
 
         impl Records<'_> {
-            /// Whether particles keep any.
+            /// True if particles keep any.
             #[must_use]
             pub fn any(&self) -> bool {
                 $( !self.$name.is_empty() )||+

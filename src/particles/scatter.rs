@@ -22,7 +22,7 @@ impl<'a, T> Scatter<'a, T> {
         }
     }
 
-    /// Whether there are no elements.
+    /// True if there are no elements.
     #[inline(always)]
     #[must_use]
     pub fn is_empty(&self) -> bool {

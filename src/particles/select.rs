@@ -6,7 +6,7 @@ use super::fields::FieldInfo;
 /// Which rows of the table a walk takes: a value of a column, a set of which a row has any, or
 /// a question to the row ([`FieldInfo::leaves`]).
 pub trait Select: Copy {
-    /// Whether the walk takes this row.
+    /// True if the walk takes this row.
     fn takes(self, field: &FieldInfo) -> bool;
 }
 
@@ -41,7 +41,7 @@ impl<Q: Fn(&FieldInfo) -> bool + Copy> Select for Q {
 }
 
 impl FieldInfo {
-    /// Whether steps write it, not only snapshots.
+    /// True if steps write it, not only snapshots.
     #[must_use]
     pub fn is_of_steps(&self) -> bool {
         self.halo != HaloPhase::SHOWN

@@ -61,7 +61,7 @@ impl ParticleStore {
         rows(which).filter(move |field| field.is_held_without(unused))
     }
 
-    /// Whether the case has use for a field.
+    /// True if the case has use for a field.
     #[must_use]
     pub fn holds(&self, field: &FieldInfo) -> bool {
         field.is_held_without(self.unused)

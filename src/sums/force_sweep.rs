@@ -88,7 +88,7 @@ impl ForceTarget<'_> {
         forces: &Forces,
     ) {
         for k in 0..cluster.lanes {
-            let i = images[cluster.receivers[k] as usize].base();
+            let i = images[cluster.receivers[k] as usize].slot();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.acceleration.slot(i) = std::array::from_fn(|a| forces.acceleration[a].0[k]);
@@ -213,7 +213,7 @@ fn push_forces(
     (forces, couple): (&Forces, &[F64x8; 3]),
 ) {
     for k in 0..cluster.lanes {
-        let i = images[cluster.receivers[k] as usize].base();
+        let i = images[cluster.receivers[k] as usize].slot();
         let force = |a: usize| mass[i] * forces.acceleration[a].0[k];
         from_mirrors.push(MirrorForce {
             particle: i,

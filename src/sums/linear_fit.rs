@@ -46,7 +46,7 @@ pub struct Fit {
     /// `.8 h √(Σ |G_a|²)` with `L = Σ v_a ⊗ G_a`: 1.4 in a cubic lattice at h = 1.3 Δp. Frequencies
     /// rise with it.
     pub norm: f64,
-    /// Whether the particles span the space.
+    /// True if the particles span the space.
     pub complete: bool,
 }
 

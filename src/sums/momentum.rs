@@ -55,10 +55,10 @@ pub struct Viscosity {
 
 /// What particles show of their stress, and how pairs of it sum up.
 pub trait PairStress: bytemuck::Pod + Send + Sync {
-    /// Whether the power of stresses on their own particles is no sum over pairs.
+    /// True if the power of stresses on their own particles is no sum over pairs.
     const CORRECTED: bool;
 
-    /// Whether there is no stress at all.
+    /// True if there is no stress at all.
     fn is_free(&self) -> bool;
 
     /// Density (kg/m³).
@@ -234,7 +234,7 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for Momentum<'_,
 pub(crate) trait OwnStress<V: Lanes>: Sized {
     /// What particles show.
     type Record: PairStress;
-    /// Whether it needs the kernel's value.
+    /// True if it needs the kernel's value.
     const SHAPED: bool;
 
     /// Of receivers that show this.

@@ -61,7 +61,7 @@ impl PullTarget<'_> {
     #[inline(always)]
     fn store(&self, images: &[Image], cluster: &Cluster, pulled: &Pulled) {
         for k in 0..cluster.lanes {
-            let i = images[cluster.receivers[k] as usize].base();
+            let i = images[cluster.receivers[k] as usize].slot();
             let per_mass = 1.0 / self.mass[i];
             let f = |a: usize| per_mass * pulled.force[a].0[k];
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -106,7 +106,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
             // side adds up to twice the part of those behind a plane along its normal, and to none
             // along the plane.
             for axis in 0..3 {
-                let behind = |&j: &u32| all.images[j as usize].code() >> axis & 1 == 1;
+                let behind = |&j: &u32| all.images[j as usize].mirror_mask() >> axis & 1 == 1;
                 indices.clear();
                 indices.extend(neighbours.iter().copied().filter(behind));
                 if indices.is_empty() {
@@ -116,7 +116,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
                 for k in 0..cluster.lanes {
                     let mut force = [0.0; 3];
                     force[axis] = 2.0 * part.0[k];
-                    let i = all.images[cluster.receivers[k] as usize].base();
+                    let i = all.images[cluster.receivers[k] as usize].slot();
                     forces.push(MirrorForce {
                         particle: i,
                         force,

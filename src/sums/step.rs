@@ -23,7 +23,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// Whether a cluster with or without halo particles among its neighbours is of this side.
+    /// True if a cluster with or without halo particles among its neighbours is of this side.
     #[inline(always)]
     #[must_use]
     pub fn takes(self, halo: bool) -> bool {

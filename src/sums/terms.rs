@@ -124,13 +124,13 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
         }
     }
 
-    /// Whether one of these terms is of the set.
+    /// True if one of these terms is of the set.
     #[inline(always)]
     pub fn has(&self, terms: u8) -> bool {
         TERMS && self.set & terms != 0
     }
 
-    /// Whether one of the terms needs the kernel's value.
+    /// True if one of the terms needs the kernel's value.
     #[inline(always)]
     pub fn need_shape(&self) -> bool {
         self.has(SHAPED)

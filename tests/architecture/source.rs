@@ -33,11 +33,11 @@ pub struct Source {
     pub reductions: Vec<Found>,
     /// Where one thread goes over all particles of a rank: `0..owned`, or an iterator over a field of the store.
     pub lone_loops: Vec<Found>,
-    /// Whether a parallel iterator begins with what is visited.
+    /// True if a parallel iterator begins with what is visited.
     begins_parallel: bool,
 }
 
-/// Whether a word stands in a list of words.
+/// True if a word stands in a list of words.
 pub fn has(words: &str, word: &str) -> bool {
     words.split(' ').any(|other| other == word)
 }
@@ -61,7 +61,7 @@ impl Source {
         source
     }
 
-    /// Whether a comment on the line, or in the comment above it, has the words.
+    /// True if a comment on the line, or in the comment above it, has the words.
     pub fn says(&self, line: usize, words: &str) -> bool {
         let above = self.lines[..line - 1].iter().rev();
         let above = above.take_while(|text| text.trim_start().starts_with("//"));
@@ -191,7 +191,7 @@ fn is_parallel(expression: &Expr) -> bool {
     begins_parallel(&name) || (name != "collect" && is_parallel(&call.receiver))
 }
 
-/// Whether it is `particles.field`, or `store.particles.field`.
+/// True if it is `particles.field`, or `store.particles.field`.
 fn is_field_of_particles(expression: &Expr) -> bool {
     let Expr::Field(field) = expression else {
         return false;

@@ -95,7 +95,7 @@ fn snapshots(run: &Path) -> BTreeSet<String> {
         .collect()
 }
 
-/// Whether a call gives a checkpoint its name.
+/// True if a call gives a checkpoint its name.
 fn publishes(call: &Call) -> bool {
     let of_step = |path: &PathBuf| {
         path.parent()

@@ -104,7 +104,7 @@ fn removed_particles_are_booked_with_the_same_bits_on_any_ranks_and_through_a_re
     );
 }
 
-/// Whether a particle that was removed had a neighbour within the support on another rank, and so
+/// True if a particle that was removed had a neighbour within the support on another rank, and so
 /// was a halo particle there.
 fn seen_by_another_rank(run: &Path) -> bool {
     let texts = std::fs::read_dir(run.join("trouble")).unwrap();

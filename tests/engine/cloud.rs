@@ -144,16 +144,16 @@ impl Cloud {
 
     pub fn place(&self, image: Image) -> [f64; 3] {
         self.mirrors
-            .reflect_position(&self.position[image.base()], image.code())
+            .reflect_position(&self.position[image.slot()], image.code())
     }
 
     pub fn find(&self) -> Found {
         let mut sequence = Sequence::new(self.grids.clone(), false);
         let facts = |image: Image| ImageFacts {
             position: self.place(image),
-            id: self.id[image.base()],
-            group: self.group(image.base()),
-            smoothing_length: self.smoothing_length[image.base()],
+            id: self.id[image.slot()],
+            group: self.group(image.slot()),
+            smoothing_length: self.smoothing_length[image.slot()],
         };
         let others: Vec<Image> = self.images().split_off(self.owned);
         let emitted: Vec<AtomicU32> = std::iter::repeat_with(AtomicU32::default)
@@ -166,7 +166,7 @@ impl Cloud {
         sequence.build(&mut scratch, owned, others, facts, |place, image| {
             emitted[place].fetch_add(1, Ordering::Relaxed);
             ImageState {
-                moving: self.velocity[image.base()] != self.velocity[0],
+                moving: self.velocity[image.slot()] != self.velocity[0],
                 resting: false,
             }
         });
@@ -176,7 +176,7 @@ impl Cloud {
             .iter()
             .map(|&image| MotionRecord {
                 position: self.place(image),
-                velocity: Mirrors::reflect_vector(&self.velocity[image.base()], image.code()),
+                velocity: Mirrors::reflect_vector(&self.velocity[image.slot()], image.code()),
                 volume: 1.0,
                 mass: 1.0,
             })
@@ -229,7 +229,7 @@ impl Found {
     pub fn names(&self, cloud: &Cloud) -> Vec<(u64, u8)> {
         let images = self.sequence.images().iter();
         images
-            .map(|image| (cloud.id[image.base()], image.code()))
+            .map(|image| (cloud.id[image.slot()], image.code()))
             .collect()
     }
 }

@@ -39,7 +39,7 @@ impl World {
             .collect();
         let (mut density, mut sigma) = (Vec::new(), Vec::new());
         for (image, motion) in found.sequence.images().iter().zip(&mut found.motion) {
-            let (stress, mass, rho) = own[image.base()];
+            let (stress, mass, rho) = own[image.slot()];
             (motion.mass, motion.volume) = (mass, mass / rho);
             let [xx, yy, zz, xy, mut xz, mut yz] =
                 Mirrors::reflect_symmetric(&stress, image.code());
@@ -64,7 +64,7 @@ impl World {
 
     /// The other particles of image i's group within reach, with `x_j − x_i` and `∇W_ij`.
     pub fn near(&self, i: usize) -> Vec<(usize, Vec3, Vec3)> {
-        let group = self.cloud.group(self.found.sequence.images()[i].base());
+        let group = self.cloud.group(self.found.sequence.images()[i].slot());
         let at = |k: usize| Vec3::from(self.found.motion[k].position);
         let h = self.found.sequence.smoothing_lengths();
         let others = self.found.sequence.group(group).filter(|&j| j != i);

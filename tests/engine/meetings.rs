@@ -26,7 +26,7 @@ fn soft(bodies: Vec<model::Body>) -> Case {
     case
 }
 
-/// Whether anything is felt of `met` before so many steps are over or a time (s) has come.
+/// True if anything is felt of `met` before so many steps are over or a time (s) has come.
 fn meets(mut simulation: Simulation, until: f64, met: fn(&Simulation) -> bool) -> bool {
     for _ in 0..2000 {
         if met(&simulation) || simulation.state.time > until {

@@ -7,7 +7,7 @@ use crate::common::random::Random;
 use model::ContactClass;
 use numerics::ordered::ordered;
 use particles::Image;
-use particles::neighbours::{Chunk, ForeignLists, ForeignTable, Kinds, PairList};
+use particles::neighbours::{Chunk, ForeignLists, ForeignTable, PairList, SizeClasses};
 use proptest::prelude::*;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
@@ -42,14 +42,14 @@ fn recipe() -> impl Strategy<Value = Recipe> {
 type Key = (usize, [u32; 2], u64, u64, u8);
 
 fn key(cloud: &Cloud, image: Image) -> Key {
-    let (group, x) = (cloud.group(image.base()), cloud.place(image));
+    let (group, x) = (cloud.group(image.slot()), cloud.place(image));
     let grid = &cloud.grids[group];
     let along = ordered(x[grid.along]);
     (
         group,
         grid.cells(&x),
         along,
-        cloud.id[image.base()],
+        cloud.id[image.slot()],
         image.code(),
     )
 }
@@ -70,8 +70,8 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
         for &place in valid {
             let image = images[place as usize];
             assert_eq!(image.code(), 0);
-            assert_eq!(cloud.group(image.base()), cluster.group);
-            seen[image.base()] += 1;
+            assert_eq!(cloud.group(image.slot()), cluster.group);
+            seen[image.slot()] += 1;
         }
     }
     assert!(seen.iter().all(|&count| count == 1));
@@ -86,11 +86,11 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
         );
         let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
         assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
-        let moves = |image: Image| cloud.velocity[image.base()] != cloud.velocity[0];
+        let moves = |image: Image| cloud.velocity[image.slot()] != cloud.velocity[0];
         assert_eq!(among.moving, images().any(moves));
         assert_eq!(
             among.halo,
-            images().any(|image| image.base() >= cloud.owned)
+            images().any(|image| image.slot() >= cloud.owned)
         );
         let group = found.sequence.group(cluster.group);
         assert!(list.iter().all(|&place| group.contains(&(place as usize))));
@@ -113,7 +113,7 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
 fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
     let groups = bodies.div_ceil(2);
     let mut table = ForeignTable {
-        kinds: Kinds::of_bodies(bodies),
+        size_classes: SizeClasses::of_bodies(bodies),
         class: vec![None; bodies * bodies],
         reach2: vec![0.0; bodies * bodies],
         group_range: vec![0.0; groups * groups],
@@ -151,7 +151,7 @@ fn collect<'a>(lists: impl Iterator<Item = &'a PairList>) -> BTreeMap<u32, Vec<u
 
 fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
     let images = found.sequence.images();
-    let body = |place: u32| cloud.body[images[place as usize].base()];
+    let body = |place: u32| cloud.body[images[place as usize].slot()];
     let mut lists = ForeignLists::default();
     lists.build(&found.clusters, &found.sequence, &found.motion, table, body);
     let places = 0..u32::try_from(images.len()).unwrap();
@@ -159,10 +159,10 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
         let mut expected = BTreeMap::new();
         for receiver in places.clone() {
             let image = images[receiver as usize];
-            if image.code() != 0 || image.base() >= cloud.owned {
+            if image.code() != 0 || image.slot() >= cloud.owned {
                 continue;
             }
-            let row = body(receiver) * table.kinds.count();
+            let row = body(receiver) * table.size_classes.count();
             let mut list: Vec<u32> = places
                 .clone()
                 .filter(|&j| {

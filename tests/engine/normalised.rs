@@ -50,7 +50,7 @@ impl World {
             .collect();
         let mut stress = Vec::new();
         for (image, motion) in found.sequence.images().iter().zip(&mut found.motion) {
-            let (tensor, [mass, density, sound_speed]) = own[image.base()];
+            let (tensor, [mass, density, sound_speed]) = own[image.slot()];
             (motion.mass, motion.volume) = (mass, mass / density);
             let tensor = Mirrors::reflect_symmetric(&tensor, image.code());
             stress.push((tensor, density, sound_speed));
@@ -72,7 +72,7 @@ impl World {
 
     /// The neighbours of a place with `V W` and `V ∇W`.
     fn near(&self, i: usize) -> Vec<(usize, f64, Vec3)> {
-        let group = self.cloud.group(self.found.sequence.images()[i].base());
+        let group = self.cloud.group(self.found.sequence.images()[i].slot());
         let mut near = Vec::new();
         for j in self.found.sequence.group(group) {
             let (r, distance, h) = self.distance(i, j);
@@ -150,11 +150,11 @@ impl World {
         let mut own = vec![Correction::NONE; self.cloud.id.len()];
         self.run(scale, |places, corrected| {
             for (k, &place) in places.iter().enumerate() {
-                own[images[place as usize].base()] = corrected.corrections[k];
+                own[images[place as usize].slot()] = corrected.corrections[k];
             }
         });
         let reflected = |image: &particles::Image| {
-            let c = &own[image.base()];
+            let c = &own[image.slot()];
             Correction {
                 matrix: Mirrors::reflect_tensor(&c.matrix, image.code()),
                 shift: Mirrors::reflect_vector(&c.shift, image.code()),

@@ -44,7 +44,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
     let state = &records.stress[i as usize];
     let images = found.sequence.images();
     let lengths = found.sequence.smoothing_lengths();
-    let group = cloud.group(images[i as usize].base());
+    let group = cloud.group(images[i as usize].slot());
     for j in found.sequence.group(group) {
         let there = &records.motion[j];
         let other = &records.stress[j];
@@ -112,7 +112,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
         .collect();
     let (motion, stress) = (found.sequence.images().iter().zip(&found.motion))
         .map(|(image, motion)| {
-            let (stress, [mass, density, sound_speed]) = own[image.base()];
+            let (stress, [mass, density, sound_speed]) = own[image.slot()];
             let motion = MotionRecord { mass, ..*motion };
             let stress = StressRecord {
                 density,

@@ -52,8 +52,8 @@ impl Records {
             inverse_shape: kernel.normalisation() / kernel.value(RATIO, 1.0),
         };
         for (image, motion) in found.sequence.images().iter().zip(&found.motion) {
-            let (stress, repulsion) = tensors[image.base()];
-            let [mass, density, sound_speed, limiter, energy] = numbers[image.base()];
+            let (stress, repulsion) = tensors[image.slot()];
+            let [mass, density, sound_speed, limiter, energy] = numbers[image.slot()];
             records.motion.push(MotionRecord { mass, ..*motion });
             records.stress.push(StressRecord {
                 density,

@@ -6,7 +6,7 @@ use engine::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds, Sent, Tall
 use model::{Axis, SymmetryPlane};
 use particles::Mirrors;
 
-/// Whether a place is within a range (m) of a box.
+/// True if a place is within a range (m) of a box.
 fn is_near(place: [f64; 3], [lower, upper]: [[f64; 3]; 2], range: f64) -> bool {
     let gaps = (0..3).map(|a| (lower[a] - place[a]).max(place[a] - upper[a]).max(0.0));
     gaps.map(|gap| gap * gap).sum::<f64>() <= range * range

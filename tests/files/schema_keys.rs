@@ -15,7 +15,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// Whether the key takes a number with a unit, or some.
+    /// True if the key takes a number with a unit, or some.
     pub fn takes_quantity(&self) -> bool {
         let kinds = ["Placed<", "ProfileParams<", "OneOrMany<", "Extent", "Point"];
         kinds.iter().any(|kind| self.kind.contains(kind))

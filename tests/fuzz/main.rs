@@ -41,13 +41,13 @@ impl Budget {
         Self { executions, until }
     }
 
-    /// Whether new texts are kept.
+    /// True if new texts are kept.
     #[must_use]
     pub fn keeps(&self) -> bool {
         self.until.is_some()
     }
 
-    /// Whether to go on after so many.
+    /// True if to go on after so many.
     #[must_use]
     pub fn allows(&self, done: usize) -> bool {
         match self.until {
@@ -78,7 +78,7 @@ pub fn folder() -> PathBuf {
 pub struct Met(BTreeSet<String>);
 
 impl Met {
-    /// Whether a message is a new one.
+    /// True if a message is a new one.
     pub fn is_new(&mut self, message: &str) -> bool {
         let title = message.lines().next().unwrap_or_default();
         // With half a quotation of the text in it nobody knows what are its own words.

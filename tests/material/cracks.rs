@@ -26,7 +26,7 @@ fn basalt(crosses: Crosses, flaws: Flaws) -> Material {
         flaws,
         most_flaws: 0.0,
     });
-    basalt.failure.manner.effect = Effect::Scaled;
+    basalt.failure.options.effect = Effect::Scaled;
     basalt
 }
 

@@ -210,7 +210,7 @@ fn a_plastic_strain_is_the_limit_and_scatters_by_particle() {
         strains
     };
     assert!(strains(&metal, 0).iter().all(|s| (s - 0.2).abs() < 1.1e-3));
-    metal.failure.manner.scatter = 8.0;
+    metal.failure.options.scatter = 8.0;
     let mut all: Vec<f64> = (0..40).flat_map(|n| strains(&metal, 8 * n)).collect();
     assert_eq!(all[8..16], strains(&metal, 8));
     all.sort_by(f64::total_cmp);
@@ -240,7 +240,7 @@ fn the_largest_principal_stress_breaks_or_is_released() {
     for effect in [Effect::StrengthLost, Effect::TensionLost] {
         let mut glass = brittle(G, K, RHO);
         glass.failure.principal_stress = Some(PrincipalStress { limit: 0.5e9 });
-        glass.failure.manner.effect = effect;
+        glass.failure.options.effect = effect;
         let mut points = batch(RHO, 0.0);
         // Tension along one axis, compression along another.
         let l = turned
@@ -286,8 +286,8 @@ fn softening_takes_the_fracture_energy() {
             pressure: -1e9,
             after: AfterSpall::Failed,
         });
-        metal.failure.manner.fracture_energy = energy;
-        metal.failure.manner.effect = Effect::Scaled;
+        metal.failure.options.fracture_energy = energy;
+        metal.failure.options.effect = Effect::Scaled;
         let mut points = batch(RHO, 0.0);
         points.mass = [RHO * size * size * size; LANES];
         let l = Matrix3::identity() * 1e4;
@@ -331,8 +331,8 @@ fn two_laws_take_the_fracture_energy_once() {
         after: AfterSpall::Failed,
     });
     metal.failure.johnson_cook = Some(ductile([0.1, 0.0, 0.0, 0.0, 0.0]));
-    metal.failure.manner.fracture_energy = energy;
-    metal.failure.manner.effect = Effect::Scaled;
+    metal.failure.options.fracture_energy = energy;
+    metal.failure.options.effect = Effect::Scaled;
     let mut points = batch(RHO, 0.0);
     points.mass = [RHO * size * size * size; LANES];
     points.failure_onset = [1.0; LANES];
@@ -361,8 +361,8 @@ fn shear_opens_no_cracks_of_spall() {
         pressure: -1e9,
         after: AfterSpall::Failed,
     });
-    metal.failure.manner.fracture_energy = 1e4;
-    metal.failure.manner.effect = Effect::Scaled;
+    metal.failure.options.fracture_energy = 1e4;
+    metal.failure.options.effect = Effect::Scaled;
     let mut points = batch(RHO, 0.0);
     points.mass = [RHO * 1e-12; LANES];
     let (opens, closes) = (Matrix3::identity() * 1e4, Matrix3::identity() * -1e4);
@@ -389,8 +389,8 @@ fn ductile_damage_softens_too() {
     let (energy, size) = (2e4, 0.2e-3);
     let mut metal = metal();
     metal.failure.johnson_cook = Some(ductile([0.1, 0.0, 0.0, 0.0, 0.0]));
-    metal.failure.manner.fracture_energy = energy;
-    metal.failure.manner.effect = Effect::Scaled;
+    metal.failure.options.fracture_energy = energy;
+    metal.failure.options.effect = Effect::Scaled;
     let mut points = batch(RHO, 0.0);
     points.mass = [RHO * size * size * size; LANES];
     let mut l = Matrix3::zeros();
@@ -424,7 +424,7 @@ fn molten_matter_fails_when_nothing_presses_it() {
     for molten in [Molten::Fails, Molten::Holds] {
         let mut metal = metal();
         metal.failure.johnson_cook = Some(ductile(AL_6061));
-        metal.failure.manner.molten = molten;
+        metal.failure.options.molten = molten;
         metal.thermal = Some(Thermal::new(HEAT, RHO, &metal.eos));
         let mut points = batch(1.05 * RHO, 0.0);
         points.specific_energy = [metal.energy(1.05 * RHO, 950.0).unwrap(); LANES];

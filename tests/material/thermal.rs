@@ -41,10 +41,13 @@ fn no_temperature_is_above_that_of_the_least_cold_energy() {
             let rho = rho0 * (0.4 + 2.5e-4 * f64::from(n));
             for above in [0.0, 1e6] {
                 let e = reference + above;
-                let told = thermal.temperature(rho, e);
+                let temperatures = thermal.temperature(rho, e);
                 let most = thermal.most::<F64x8>(&[e; LANES]).store().0[0];
-                assert!(told <= most, "{told} for {most} at {rho}: {eos:?}");
-                least = least.min(most - told);
+                assert!(
+                    temperatures <= most,
+                    "{temperatures} for {most} at {rho}: {eos:?}"
+                );
+                least = least.min(most - temperatures);
                 range = range.max(most);
             }
         }
@@ -117,12 +120,18 @@ fn temperatures_after_an_update_are_those_of_the_state() {
                 points.specific_energy[k] = 3e4 * part;
                 points.damage[k] = f64::from(k > 5);
             }
-            let untorn = metal.update(&mut points, 1e-9);
-            let told = metal.updated_temperatures(&points, &work, &untorn).unwrap();
+            let before_failure = metal.update(&mut points, 1e-9);
+            let temperatures = metal
+                .updated_temperatures(&points, &work, &before_failure)
+                .unwrap();
             for k in 0..8 {
                 let energy = metal.thermal_energy(points.specific_energy[k], work[k]);
                 let alone = metal.temperature(points.density[k], energy, points.damage[k]);
-                assert_eq!(told[k].to_bits(), alone.unwrap().to_bits(), "{ratio}, {k}");
+                assert_eq!(
+                    temperatures[k].to_bits(),
+                    alone.unwrap().to_bits(),
+                    "{ratio}, {k}"
+                );
             }
         }
     }

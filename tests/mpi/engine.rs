@@ -239,7 +239,7 @@ fn check_halo(
     let mut copies = BTreeSet::new();
     let owned = (0..particles.owned()).map(|i| Image::new(i, 0));
     for image in owned.chain(halo.others().iter().copied()) {
-        let slot = image.base();
+        let slot = image.slot();
         assert!(slot < particles.owned() + particles.halo());
         let k = numbers[&particles.id[slot]];
         assert!(held.insert((k, image.code())), "an image twice");

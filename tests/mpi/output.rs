@@ -338,7 +338,7 @@ fn few_writers_and_aligned_arrays_write_the_same_rows() {
     }
 }
 
-/// Whether a rank has rows where so many are spread evenly over some of the ranks.
+/// True if a rank has rows where so many are spread evenly over some of the ranks.
 fn writes(comm: &Comm, writers: usize, total: u64) -> bool {
     Block::shared(total, comm.rank(), comm.size(), writers.min(comm.size())).count > 0
 }

@@ -58,7 +58,7 @@ pub fn on_each(test: &str, ranks: &[usize], task: impl Fn(&Comm)) {
     }
 }
 
-/// Whether this process is a rank that [`on_ranks`] started.
+/// True if this process is a rank that [`on_ranks`] started.
 pub fn is_rank() -> bool {
     std::env::var_os(FOLDER).is_some()
 }

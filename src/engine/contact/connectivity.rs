@@ -18,7 +18,7 @@ const ALL_PLANES: u32 = 7;
 /// Fragments of the images, kept from step to step; empty without self-contact.
 #[derive(Debug, Default)]
 pub struct Connectivity {
-    /// Whether there is self-contact.
+    /// True if there is self-contact.
     is_active: bool,
     /// 1 over the distance of folds (1/m), by body; empty without.
     per_fold: Vec<f64>,
@@ -66,12 +66,12 @@ impl Connectivity {
         resize(&mut self.of_images, images.len());
         let fragments = self.of_images.par_iter_mut().with_min_len(GRAIN);
         fragments.zip(images).for_each(|(part, image)| {
-            let i = image.base();
+            let i = image.slot();
             // Behind a plane that cuts the part stands the part itself.
-            let code = u32::from(image.code()) & !particles.part_planes[i];
+            let mirror_mask = u32::from(image.mirror_mask()) & !particles.part_planes[i];
             *part = Fragment {
                 label: particles.part[i],
-                code: code.into(),
+                mirror_mask: mirror_mask.into(),
             };
         });
         if self.per_fold.is_empty() {
@@ -80,8 +80,9 @@ impl Connectivity {
         resize(&mut self.references, images.len());
         let references = self.references.par_iter_mut().with_min_len(GRAIN);
         references.zip(images).for_each(|(index, image)| {
-            let i = image.base();
-            let start = mirrors.reflect_position(&particles.reference_position[i], image.code());
+            let i = image.slot();
+            let start =
+                mirrors.reflect_position(&particles.reference_position[i], image.mirror_mask());
             let scale = self.per_fold[particles.body[i] as usize];
             *index = start.map(|x| x * scale);
         });
@@ -93,21 +94,22 @@ impl Connectivity {
     pub(crate) fn link(lists: &Lists, sets: &Sets) {
         let images = lists.images();
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        let base = |index: u32| images[index as usize].base() as u32;
+        let slot = |index: u32| images[index as usize].slot() as u32;
         lists.chunks().par_iter().for_each(|chunk| {
             for (cluster, neighbours, _) in chunk.iter() {
-                let own = cluster.receivers.map(base);
+                let own = cluster.receivers.map(slot);
                 let mut here = own.map(|i| sets.root(i));
                 for &j in neighbours {
-                    let code = images[j as usize].code();
-                    let mut there = sets.root(base(j));
+                    let mirror_mask = images[j as usize].mirror_mask();
+                    let mut there = sets.root(slot(j));
                     for (k, &i) in cluster.valid().iter().enumerate() {
                         // Roots may be old, which costs a look more.
-                        if (there == here[k] && code == 0) || !lists.in_support(cluster.group, i, j)
+                        if (there == here[k] && mirror_mask == 0)
+                            || !lists.in_support(cluster.group, i, j)
                         {
                             continue;
                         }
-                        sets.mark(own[k], code.into());
+                        sets.mark(own[k], mirror_mask.into());
                         sets.join(here[k], there);
                         here[k] = sets.root(own[k]);
                         there = here[k];
@@ -180,20 +182,20 @@ impl Connectivity {
         }
     }
 
-    /// Whether an image of an owned particle that rests is no stranger to what else rests of its body.
+    /// True if an image of an owned particle that rests is no stranger to what else rests of its body.
     pub(crate) fn lets_rest(&self, particles: &ParticleStore, image: Image) -> bool {
-        let (i, code) = (image.base(), u32::from(image.code()));
+        let (i, mirror_mask) = (image.slot(), u32::from(image.mirror_mask()));
         !self.is_active
             || particles.part[i] == self.at_rest[particles.body[i] as usize].0
-                && code & !particles.part_planes[i] == 0
+                && mirror_mask & !particles.part_planes[i] == 0
     }
 
-    /// Whether there is self-contact.
+    /// True if there is self-contact.
     pub(crate) fn is_active(&self) -> bool {
         self.is_active
     }
 
-    /// Whether pieces are to be labelled at a step, from lists of all active particles.
+    /// True if pieces are to be labelled at a step, from lists of all active particles.
     pub(crate) fn is_due(&self, step: u64) -> bool {
         self.is_active && step.is_multiple_of(EVERY)
     }

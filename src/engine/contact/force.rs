@@ -1,7 +1,7 @@
 //! Contact forces on their way from pairs of particles to the store and the sums.
 
 use super::pair::Pair;
-use super::view::{Party, Separation};
+use super::view::{ContactParticle, Separation};
 use numerics::virial::Virial;
 use particles::empty;
 
@@ -53,14 +53,14 @@ pub struct BodyForce {
 
 /// What contact forces carry through the matter of a particle.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Borne {
+pub(crate) struct ContactStress {
     /// Of all forces, over half of the line of each pair and all of that to a rigid surface.
     pub virial: Virial,
     /// The sum of what presses, without friction of pairs (N); zero without contact.
     pub press: [f64; 3],
 }
 
-impl Borne {
+impl ContactStress {
     /// Adds a force and the part of it that presses (N), over an arm (m).
     #[inline(always)]
     pub fn add(&mut self, force: &[f64; 3], press: &[f64; 3], arm: &[f64; 3]) {
@@ -110,10 +110,10 @@ impl TaskForces {
 }
 
 impl<'a> Receiver<'a> {
-    pub fn new(i: &Party, neighbours: usize, by_body: &'a mut Vec<BodyForce>) -> Self {
+    pub fn new(i: &ContactParticle, neighbours: usize, by_body: &'a mut Vec<BodyForce>) -> Self {
         Self {
             sum: ContactForce {
-                particle: i.base,
+                particle: i.slot,
                 neighbours,
                 force: [0.0; 3],
                 drag: [0.0; 3],
@@ -133,19 +133,19 @@ impl<'a> Receiver<'a> {
 
     /// Distance and approach of the pair with `other`.
     #[inline]
-    pub fn meet(&mut self, other: &Party, separation: &Separation, pair: &Pair) {
+    pub fn meet(&mut self, other: &ContactParticle, separation: &Separation, pair: &Pair) {
         separation.raise_approach(pair.h, &mut self.sum.approach);
         let distance = separation.distance * pair.inverse_spacing;
         self.sum.closest = self.sum.closest.min(distance);
         let body = self.by(other.body);
         if distance < body.closest {
-            (body.closest, body.nearest) = (distance, other.base);
+            (body.closest, body.nearest) = (distance, other.slot);
         }
     }
 
     /// Force (N), energy (J) and heat (W) of the pair with `other`.
     #[inline]
-    pub fn add(&mut self, other: &Party, force: &[f64; 3], energy: f64, heat: f64) {
+    pub fn add(&mut self, other: &ContactParticle, force: &[f64; 3], energy: f64, heat: f64) {
         self.sum.energy += energy;
         self.sum.heat += heat;
         for a in 0..3 {
@@ -158,7 +158,13 @@ impl<'a> Receiver<'a> {
 
     /// Viscosity of the pair with `other`, which approaches: `drag` (N).
     #[inline]
-    pub fn brake(&mut self, other: &Party, separation: &Separation, drag: f64, pair: &Pair) {
+    pub fn brake(
+        &mut self,
+        other: &ContactParticle,
+        separation: &Separation,
+        drag: f64,
+        pair: &Pair,
+    ) {
         let force = separation.along(drag);
         for a in 0..3 {
             self.sum.drag[a] += force[a];
@@ -172,8 +178,8 @@ impl<'a> Receiver<'a> {
 
     /// Books a force (N) of `other` by where that stands and by its body; gives what is by this body.
     #[inline]
-    fn exert(&mut self, other: &Party, force: &[f64; 3]) -> &mut BodyForce {
-        if other.code != 0 {
+    fn exert(&mut self, other: &ContactParticle, force: &[f64; 3]) -> &mut BodyForce {
+        if other.mirror_mask != 0 {
             for a in 0..3 {
                 self.sum.from_mirrors[a] += force[a];
             }

@@ -30,7 +30,7 @@ pub struct Slip {
     pub displacement: [f64; 3],
     /// Tangential velocity (m/s).
     pub rate: [f64; 3],
-    /// Whether the kinetic limit holds, until the velocity turns against the slip.
+    /// True if the kinetic limit holds, until the velocity turns against the slip.
     pub sliding: bool,
 }
 
@@ -65,7 +65,7 @@ fn turned(v: &[f64; 3], n: &[f64; 3]) -> [f64; 3] {
 }
 
 impl Law {
-    /// Whether there is any friction or damping.
+    /// True if there is any friction or damping.
     #[inline]
     #[must_use]
     pub fn is_any(&self) -> bool {

@@ -7,7 +7,7 @@
 //! A mode is an `impl` of `Constants` and of `Mode` for its parameters; nothing else knows it by
 //! name.
 
-mod books;
+mod accumulators;
 mod connectivity;
 mod force;
 pub mod friction;

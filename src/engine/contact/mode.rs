@@ -4,10 +4,10 @@
 use rayon::prelude::*;
 
 use super::ContactTable;
-use super::force::{Borne, Receiver, TaskForces};
+use super::force::{ContactStress, Receiver, TaskForces};
 use super::pair::{Listed, Pair};
 use super::resistance::{NormalLoad, PairFriction};
-use super::view::{ContactView, Party, Separation};
+use super::view::{ContactParticle, ContactView, Separation};
 use model::{ContactClass, contact_modes};
 use particles::neighbours::{CHUNKS_AT_ONCE, Chunk, Lists, PairList};
 use particles::{GRAIN, ParticleStore, empty};
@@ -20,34 +20,39 @@ pub(crate) trait Mode: Listed + Sized {
     type Side: Copy;
 
     /// Measures before the forces, and stores what these read. `found` is kept from step to step.
-    fn measure(_found: &mut Found<Self>, _scene: &mut Scene) {}
+    fn measure(_found: &mut MeasuredChunks<Self>, _scene: &mut Scene) {}
 
     /// Measures for the first time, before any forces, what the start of a case is to be forgiven;
     /// gives the number of particles of which not all can be.
-    fn begin(_found: &mut Found<Self>, _scene: &mut Scene) -> i64 {
+    fn begin(_found: &mut MeasuredChunks<Self>, _scene: &mut Scene) -> i64 {
         0
     }
 
     /// What forces read of a particle.
-    fn side(view: &ContactView, particle: &Party) -> Self::Side;
+    fn side(view: &ContactView, particle: &ContactParticle) -> Self::Side;
 
     /// What a pair does to its first particle, if anything; adds to the stiffness for the time step
     /// (N/m) of this particle.
-    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce>;
+    fn force(pair: &ParticlePair<Self>, stiffness: &mut f64) -> Option<PairForce>;
 
     /// Adds what friction and damping of the receiver `i` rest on: half of each force, if not said
     /// otherwise.
-    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
+    fn normal_load(
+        view: &ContactView,
+        i: &ContactParticle,
+        neighbours: &[u32],
+        load: &mut NormalLoad,
+    ) {
         let here = Self::side(view, i);
         for &other in neighbours {
-            let j = view.party(other);
-            let meeting = Meeting::<Self>::new(view, [i, &j], here);
-            if !meeting.pair.friction.is_any() {
+            let j = view.particle(other);
+            let pair = ParticlePair::<Self>::new(view, [i, &j], here);
+            if !pair.constants.friction.is_any() {
                 continue;
             }
-            if let Some(PairForce { force, loads, .. }) = Self::force(&meeting, &mut 0.0) {
+            if let Some(PairForce { force, loads, .. }) = Self::force(&pair, &mut 0.0) {
                 let force = force.map(|f| 0.5 * f);
-                load.add(meeting.pair, [i, &j], loads[0], &force);
+                load.add(pair.constants, [i, &j], loads[0], &force);
                 load.face(1.0, &force);
             }
         }
@@ -55,7 +60,7 @@ pub(crate) trait Mode: Listed + Sized {
 }
 
 /// What a mode measures, chunk by chunk.
-pub(crate) type Found<M> = Vec<Vec<<M as Mode>::Measured>>;
+pub(crate) type MeasuredChunks<M> = Vec<Vec<<M as Mode>::Measured>>;
 
 /// What a mode measures on, after a step of `dt` (s).
 pub(crate) struct Scene<'a> {
@@ -72,12 +77,12 @@ impl Scene<'_> {
 }
 
 /// A particle and a foreign neighbour.
-pub(crate) struct Meeting<'a, M: Mode> {
+pub(crate) struct ParticlePair<'a, M: Mode> {
     pub view: &'a ContactView<'a>,
-    pub i: &'a Party,
-    pub j: &'a Party,
+    pub i: &'a ContactParticle,
+    pub j: &'a ContactParticle,
     pub separation: Separation,
-    pub pair: &'a Pair,
+    pub constants: &'a Pair,
     /// Constants of the mode.
     pub own: &'a M::Pair,
     pub here: M::Side,
@@ -108,16 +113,16 @@ impl PairForce {
     }
 }
 
-impl<'a, M: Mode> Meeting<'a, M> {
+impl<'a, M: Mode> ParticlePair<'a, M> {
     #[inline(always)]
-    pub fn new(view: &'a ContactView, [i, j]: [&'a Party; 2], here: M::Side) -> Self {
+    pub fn new(view: &'a ContactView, [i, j]: [&'a ContactParticle; 2], here: M::Side) -> Self {
         Self {
             view,
             i,
             j,
             separation: Separation::between(i, j),
-            pair: view.table.pair(i.kind, j.kind),
-            own: view.table.own::<M>(i.kind, j.kind),
+            constants: view.table.pair(i.size_class, j.size_class),
+            own: view.table.own::<M>(i.size_class, j.size_class),
             here,
             there: M::side(view, j),
         }
@@ -145,26 +150,26 @@ impl TaskForces {
         list: impl Iterator<Item = (u32, &'l [u32])>,
     ) {
         for (index, neighbours) in list {
-            let i = view.party(index);
+            let i = view.particle(index);
             let here = M::side(view, &i);
             let mut on = Receiver::new(&i, neighbours.len(), &mut self.by_body);
             let mut friction = FRICTION.then(|| PairFriction::of(view, &i));
             for &other in neighbours {
-                let j = view.party(other);
-                let meeting = Meeting::<M>::new(view, [&i, &j], here);
-                on.meet(&j, &meeting.separation, meeting.pair);
-                let Some(mut pair) = M::force(&meeting, &mut on.sum.stiffness) else {
+                let j = view.particle(other);
+                let pair = ParticlePair::<M>::new(view, [&i, &j], here);
+                on.meet(&j, &pair.separation, pair.constants);
+                let Some(mut exerted) = M::force(&pair, &mut on.sum.stiffness) else {
                     continue;
                 };
                 let mut heat = 0.0;
                 if let Some(friction) = &mut friction {
-                    friction.pair(view, [&i, &j], pair.loads);
-                    pair.resist(friction);
+                    friction.pair(view, [&i, &j], exerted.loads);
+                    exerted.resist(friction);
                     heat = friction.heat;
                 }
-                on.add(&j, &pair.force, pair.energy, heat);
-                if pair.drag > 0.0 {
-                    on.brake(&j, &meeting.separation, pair.drag, meeting.pair);
+                on.add(&j, &exerted.force, exerted.energy, heat);
+                if exerted.drag > 0.0 {
+                    on.brake(&j, &pair.separation, exerted.drag, pair.constants);
                 }
             }
             if let Some(friction) = friction {
@@ -178,29 +183,29 @@ impl TaskForces {
 }
 
 /// What forces of one mode carry through a receiver: half of each pair's line is its side's.
-fn borne_of_mode<M: Mode>(
+fn stress_of_mode<M: Mode>(
     view: &ContactView,
-    i: &Party,
+    i: &ContactParticle,
     neighbours: &[u32],
     with_friction: bool,
-) -> Borne {
+) -> ContactStress {
     let here = M::side(view, i);
     let mut friction = with_friction.then(|| PairFriction::of(view, i));
-    let mut borne = Borne::default();
+    let mut carried = ContactStress::default();
     for &other in neighbours {
-        let j = view.party(other);
-        let meeting = Meeting::<M>::new(view, [i, &j], here);
-        if let Some(mut pair) = M::force(&meeting, &mut 0.0) {
-            let press = pair.force;
+        let j = view.particle(other);
+        let pair = ParticlePair::<M>::new(view, [i, &j], here);
+        if let Some(mut exerted) = M::force(&pair, &mut 0.0) {
+            let press = exerted.force;
             if let Some(friction) = &mut friction {
-                friction.pair(view, [i, &j], pair.loads);
-                pair.resist(friction);
+                friction.pair(view, [i, &j], exerted.loads);
+                exerted.resist(friction);
             }
-            let arm = meeting.separation.r.map(|x| 0.5 * x);
-            borne.add(&pair.force, &press, &arm);
+            let arm = pair.separation.r.map(|x| 0.5 * x);
+            carried.add(&exerted.force, &press, &arm);
         }
     }
-    borne
+    carried
 }
 
 /// Sets all elements, on all threads.
@@ -234,7 +239,7 @@ macro_rules! dispatch {
         /// What all modes measure, kept from step to step.
         #[derive(Default)]
         pub(super) struct Measurements {
-            $($name: Found<model::$Mode>,)+
+            $($name: MeasuredChunks<model::$Mode>,)+
         }
 
         impl Measurements {
@@ -270,16 +275,16 @@ macro_rules! dispatch {
 
         /// What forces of a class carry through the receiver `i`, with friction and damping if
         /// there are any.
-        pub(super) fn borne_of(
+        pub(super) fn stress_of(
             view: &ContactView,
             class: ContactClass,
-            i: &Party,
+            i: &ContactParticle,
             neighbours: &[u32],
             friction: bool,
-        ) -> Borne {
+        ) -> ContactStress {
             match class {
                 $(ContactClass::$Mode => {
-                    borne_of_mode::<model::$Mode>(view, i, neighbours, friction)
+                    stress_of_mode::<model::$Mode>(view, i, neighbours, friction)
                 })+
             }
         }
@@ -287,7 +292,7 @@ macro_rules! dispatch {
         /// What friction and damping of the receiver `i` rest on, given its neighbours by class.
         pub(super) fn normal_load(
             view: &ContactView,
-            i: &Party,
+            i: &ContactParticle,
             neighbours: &[&[u32]; ContactClass::COUNT],
         ) -> NormalLoad {
             let mut load = NormalLoad::default();

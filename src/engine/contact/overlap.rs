@@ -9,10 +9,10 @@
 mod measure;
 
 use super::ContactTable;
-use super::mode::{Found, Meeting, Mode, PairForce, Scene};
+use super::mode::{MeasuredChunks, Mode, PairForce, ParticlePair, Scene};
 use super::pair::{Between, Constants, Pair};
 use super::resistance::NormalLoad;
-use super::view::{ContactView, Party, Separation};
+use super::view::{ContactParticle, ContactView, Separation};
 pub use measure::{Fraction, OFFSET_LIMIT, fraction, initial_offset};
 use measure::{Measured, weigh};
 use model::{Body, Case, ContactClass, ContactDirection, Overlap};
@@ -46,19 +46,19 @@ pub struct OverlapPair {
     pub core_viscosity: f64,
     /// Viscosity of isolated particles over excess, both volumes and slope: `ρ' B/E_0` (kg/m³).
     pub isolated_viscosity: f64,
-    /// Whether forces but those of the core act along the normals of the surfaces.
+    /// True if forces but those of the core act along the normals of the surfaces.
     pub along_normal: bool,
 }
 
 impl ContactTable {
-    /// Constants of overlap contact of a receiver of kind `a` and a neighbour of kind `b`.
+    /// Constants of overlap contact of a receiver of size class `a` and a neighbour of size class `b`.
     #[inline]
     #[must_use]
     pub fn overlap(&self, a: usize, b: usize) -> &OverlapPair {
         self.own::<Overlap>(a, b)
     }
 
-    /// Whether any pair of bodies has overlap contact, which alone measures foreign fractions.
+    /// True if any pair of bodies has overlap contact, which alone measures foreign fractions.
     #[must_use]
     pub fn measures_fractions(&self) -> bool {
         self.foreign.class.contains(&Some(ContactClass::Overlap))
@@ -110,9 +110,16 @@ fn harmonic_mean(case: &Case, [a, b]: [usize; 2], value: impl Fn(&Body) -> f64) 
 }
 
 #[inline(always)]
-fn constants<'a>(view: &ContactView<'a>, i: &Party, j: &Party) -> (&'a Pair, &'a OverlapPair) {
+fn constants<'a>(
+    view: &ContactView<'a>,
+    i: &ContactParticle,
+    j: &ContactParticle,
+) -> (&'a Pair, &'a OverlapPair) {
     let table = view.table;
-    (table.pair(i.kind, j.kind), table.overlap(i.kind, j.kind))
+    (
+        table.pair(i.size_class, j.size_class),
+        table.overlap(i.size_class, j.size_class),
+    )
 }
 
 impl Mode for Overlap {
@@ -120,14 +127,14 @@ impl Mode for Overlap {
     /// The stored fraction of a particle, as its neighbours see it; nothing without excess.
     type Side = Fraction;
 
-    fn measure(found: &mut Found<Self>, scene: &mut Scene) {
+    fn measure(found: &mut MeasuredChunks<Self>, scene: &mut Scene) {
         weigh(found, scene);
         measure::store(found, scene);
     }
 
     /// Gives every particle the initial overlap offset that makes it start free of force; some are
     /// capped.
-    fn begin(found: &mut Found<Self>, scene: &mut Scene) -> i64 {
+    fn begin(found: &mut MeasuredChunks<Self>, scene: &mut Scene) -> i64 {
         weigh(found, scene);
         let mut capped = 0;
         for measured in found.iter().flatten() {
@@ -139,51 +146,51 @@ impl Mode for Overlap {
     }
 
     #[inline(always)]
-    fn side(view: &ContactView, particle: &Party) -> Fraction {
-        let (particles, base) = (view.particles, particle.base);
-        let excess = particles.contact_excess[base];
+    fn side(view: &ContactView, particle: &ContactParticle) -> Fraction {
+        let (particles, slot) = (view.particles, particle.slot);
+        let excess = particles.contact_excess[slot];
         if excess == 0.0 {
             return Fraction::default();
         }
         Fraction {
             excess,
-            fraction: particles.foreign_fraction[base],
-            modulus: particles.contact_modulus[base],
-            touching: particles.touching_value[base],
-            slope: particles.contact_slope[base],
+            fraction: particles.foreign_fraction[slot],
+            modulus: particles.contact_modulus[slot],
+            touching: particles.touching_value[slot],
+            slope: particles.contact_slope[slot],
             current: 0.0,
-            isolation: particles.isolation[base],
+            isolation: particles.isolation[slot],
         }
     }
 
     /// `f_ij = −V_i V_j (a_ij + a_ji) ∇_i W_ij`, and the core.
     #[inline(always)]
-    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
-        let Meeting {
+    fn force(pair: &ParticlePair<Self>, stiffness: &mut f64) -> Option<PairForce> {
+        let ParticlePair {
             view,
             i,
             j,
             separation,
-            pair,
+            constants,
             own,
             here,
             there,
-        } = meeting;
+        } = pair;
         let distance = separation.distance;
         let pressed = here.excess > 0.0 || there.excess > 0.0;
         if !pressed && distance >= own.core_radius {
             return None;
         }
         let (mut bulk, mut core, mut energy, mut drag) = (0.0, 0.0, 0.0, 0.0);
-        let back = view.table.overlap(j.kind, i.kind);
+        let back = view.table.overlap(j.size_class, i.size_class);
         if pressed {
-            let slope = -pair.kernel.slope(distance);
+            let slope = -constants.kernel.slope(distance);
             let pressure = slope_of_energy(here, own) + slope_of_energy(there, back);
             bulk = i.volume * j.volume * pressure * slope;
-            *stiffness += bulk_stiffness(meeting, slope);
-            drag = isolated_drag(meeting, slope);
+            *stiffness += bulk_stiffness(pair, slope);
+            drag = isolated_drag(pair, slope);
             if here.excess > 0.0 {
-                let share = j.volume * pair.kernel.value(distance) * own.modulus;
+                let share = j.volume * constants.kernel.value(distance) * own.modulus;
                 energy += 0.5 * i.volume * (here.excess * here.excess) * share / here.fraction;
             }
         }
@@ -200,7 +207,7 @@ impl Mode for Overlap {
         }
         let force = if own.along_normal {
             // The core has no use for normals: it keeps lone particles apart.
-            let bulk = meeting.along(bulk, true);
+            let bulk = pair.along(bulk, true);
             let core = separation.along(core);
             [bulk[0] + core[0], bulk[1] + core[1], bulk[2] + core[2]]
         } else {
@@ -219,14 +226,20 @@ impl Mode for Overlap {
 
     /// The normal is that which i sees less the mean of those that its neighbours see, weighted
     /// with `o_ij`.
-    fn normal_load(view: &ContactView, i: &Party, neighbours: &[u32], load: &mut NormalLoad) {
+    fn normal_load(
+        view: &ContactView,
+        i: &ContactParticle,
+        neighbours: &[u32],
+        load: &mut NormalLoad,
+    ) {
         let here = Self::side(view, i);
-        let normal =
-            |of: &Party| Mirrors::reflect_vector(&view.particles.contact_normal[of.base], of.code);
+        let normal = |of: &ContactParticle| {
+            Mirrors::reflect_vector(&view.particles.contact_normal[of.slot], of.mirror_mask)
+        };
         let mut sum = 0.0;
         for &other in neighbours {
-            let j = view.party(other);
-            let pair = view.table.pair(i.kind, j.kind);
+            let j = view.particle(other);
+            let pair = view.table.pair(i.size_class, j.size_class);
             if !pair.friction.is_any() {
                 continue;
             }
@@ -255,7 +268,7 @@ fn slope_of_energy(i: &Fraction, pair: &OverlapPair) -> f64 {
 /// what friction of the pair rests on from i's side.
 fn own_force(
     view: &ContactView,
-    [i, j]: [&Party; 2],
+    [i, j]: [&ContactParticle; 2],
     separation: &Separation,
     here: &Fraction,
 ) -> f64 {
@@ -269,30 +282,30 @@ fn own_force(
 
 /// `B ρ' ṙ² V_i V_j |∇W_ij| min(1, (E_i + E_j)/E_0) min(1, λ_i + λ_j)` of a pair that approaches (N).
 #[inline(always)]
-fn isolated_drag(meeting: &Meeting<Overlap>, slope: f64) -> f64 {
-    let (here, there) = (&meeting.here, &meeting.there);
+fn isolated_drag(pair: &ParticlePair<Overlap>, slope: f64) -> f64 {
+    let (here, there) = (&pair.here, &pair.there);
     let isolation = here.isolation + there.isolation;
     if isolation == 0.0 {
         return 0.0;
     }
     let share = isolation.min(1.0) * (here.excess + there.excess).min(WHOLE_EXCESS);
-    let approach = meeting.separation.approach().max(0.0);
-    let volumes = meeting.i.volume * meeting.j.volume;
-    meeting.own.isolated_viscosity * share * volumes * slope * (approach * approach)
+    let approach = pair.separation.approach().max(0.0);
+    let volumes = pair.i.volume * pair.j.volume;
+    pair.own.isolated_viscosity * share * volumes * slope * (approach * approach)
 }
 
 /// A pair's part of `k_i = 2 M V_i Σ_j V_j [(g_i + g_j)|∇W_ij| + (E_i + E_j)|W″_ij|]` (N/m), with
 /// `g` counted where there is excess and `slope` for `|∇W_ij|`.
 #[inline(always)]
-fn bulk_stiffness(meeting: &Meeting<Overlap>, slope: f64) -> f64 {
-    let (here, there) = (&meeting.here, &meeting.there);
-    let curvature = meeting
-        .pair
+fn bulk_stiffness(pair: &ParticlePair<Overlap>, slope: f64) -> f64 {
+    let (here, there) = (&pair.here, &pair.there);
+    let curvature = pair
+        .constants
         .kernel
-        .curvature(meeting.separation.distance)
+        .curvature(pair.separation.distance)
         .abs();
     let active = |f: &Fraction| if f.excess > 0.0 { f.slope } else { 0.0 };
     let steep = (active(here) + active(there)) * slope;
     let bent = (here.excess + there.excess) * curvature;
-    2.0 * meeting.own.modulus * meeting.i.volume * meeting.j.volume * (steep + bent)
+    2.0 * pair.own.modulus * pair.i.volume * pair.j.volume * (steep + bent)
 }

@@ -1,4 +1,4 @@
-//! Constants of a pair of kinds of particles: those that all modes share, and those that each mode has beside
+//! Constants of a pair of size classes of particles: those that all modes share, and those that each mode has beside
 //! them.
 
 use std::fmt::Debug;
@@ -8,7 +8,7 @@ use model::{Body, Case, ContactLaw, ContactMode, Resistance, contact_modes};
 use numerics::kernel::{FixedKernel, Kernel};
 use particles::{HaloPhase, Owner};
 
-/// Reference constants of an ordered pair of kinds (receiver, other).
+/// Reference constants of an ordered pair of size classes (receiver, other).
 #[derive(Debug, Clone, Copy)]
 pub struct Pair {
     /// Mean smoothing length `h_ij` (m).
@@ -26,11 +26,11 @@ pub struct Pair {
     pub heat_share: f64,
 }
 
-/// Two kinds of particles whose constants are wanted.
+/// Two size classes of particles whose constants are wanted.
 pub(crate) struct Between<'a> {
     pub case: &'a Case,
     pub kernel: &'a Kernel,
-    /// Receiver and other, with the spacings of their kinds.
+    /// Receiver and other, with the spacings of their size classes.
     pub bodies: [&'a Body; 2],
     /// Their places in the case.
     pub indices: [usize; 2],
@@ -41,7 +41,7 @@ pub(crate) struct Between<'a> {
 
 /// The constants of a mode, and what it needs.
 pub(crate) trait Constants: ContactLaw {
-    /// Its constants of an ordered pair of kinds.
+    /// Its constants of an ordered pair of size classes.
     type Pair: Debug + Clone + Default;
 
     /// What it makes halo particles hear of before the forces, beside the stresses.
@@ -50,7 +50,7 @@ pub(crate) trait Constants: ContactLaw {
     /// The option of the table of fields that holds fields of this mode alone.
     const OWNER: Owner = Owner::empty();
 
-    /// Its constants of two kinds.
+    /// Its constants of two size classes.
     fn pair(&self, of: &Between) -> Self::Pair;
 }
 
@@ -61,7 +61,7 @@ pub(crate) trait Listed: Constants {
 
 macro_rules! pairs {
     ($($name:ident: $Mode:ident,)+) => {
-        /// Constants of each mode for every ordered pair of kinds; zeros where the mode is
+        /// Constants of each mode for every ordered pair of size classes; zeros where the mode is
         /// another.
         #[derive(Debug, Clone, Default)]
         pub(crate) struct ModePairs {

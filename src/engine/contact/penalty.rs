@@ -11,9 +11,9 @@ mod boundary;
 
 use rayon::prelude::*;
 
-use super::mode::{Found, Meeting, Mode, PairForce, Scene, fill, for_each_chunk};
+use super::mode::{MeasuredChunks, Mode, PairForce, ParticlePair, Scene, fill, for_each_chunk};
 use super::pair::{Between, Constants};
-use super::view::{ContactView, Party};
+use super::view::{ContactParticle, ContactView};
 use boundary::{Boundary, CORNER, normal};
 use model::{ContactClass, Penalty, PenaltyLaw};
 use numerics::vector::{dot, minus, norm};
@@ -26,7 +26,7 @@ use particles::{HaloPhase, Owner, Scatter};
 pub(crate) struct PenaltyPair {
     /// κ times the smaller p-wave modulus (Pa).
     modulus: f64,
-    /// Whether the force is no more than what stops the approach in one step.
+    /// True if the force is no more than what stops the approach in one step.
     pinball: bool,
     /// What tells boundary particles of the receiver's body.
     boundary: Boundary,
@@ -54,7 +54,7 @@ impl Mode for Penalty {
     type Side = ();
 
     /// Normals of the boundary particles that may be pressed on.
-    fn measure(found: &mut Found<Self>, scene: &mut Scene) {
+    fn measure(found: &mut MeasuredChunks<Self>, scene: &mut Scene) {
         let view = scene.view();
         for_each_chunk(
             found,
@@ -69,10 +69,11 @@ impl Mode for Penalty {
                 for (cluster, neighbours, _) in own.iter() {
                     for &index in &cluster.receivers[..cluster.lanes] {
                         if let Some((_, foreign)) = wanted.next_if(|(at, _)| *at == index) {
-                            let i = view.party(index);
-                            let j = view.party(foreign[0]);
-                            let known = &view.table.own::<Self>(i.kind, j.kind).boundary;
-                            found.push((i.base, normal(&view, &i, neighbours, known)));
+                            let i = view.particle(index);
+                            let j = view.particle(foreign[0]);
+                            let known =
+                                &view.table.own::<Self>(i.size_class, j.size_class).boundary;
+                            found.push((i.slot, normal(&view, &i, neighbours, known)));
                         }
                     }
                 }
@@ -87,18 +88,18 @@ impl Mode for Penalty {
         });
     }
 
-    fn side(_: &ContactView, _: &Party) {}
+    fn side(_: &ContactView, _: &ContactParticle) {}
 
     /// Over the directions n of [`directions`] with shares s: `p = Δp̄ − r·n`, `w = s ⟨1 −
     /// t²/Δp̄²⟩₊²` over the offset t across n, `F₂ = w κ M V̄/Δp̄ (p/Δp̄)^{3/2}` along n; by the
     /// law of pinballs their sum is no more than `F₁ = Σw m_i m_j/(m_i + m_j) ṗ/Δt` while the two
     /// approach along it and nothing while they part.
-    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
-        let Meeting { view, i, j, .. } = *meeting;
-        let (separation, spacing) = (&meeting.separation, meeting.pair.spacing);
+    fn force(pair: &ParticlePair<Self>, stiffness: &mut f64) -> Option<PairForce> {
+        let ParticlePair { view, i, j, .. } = *pair;
+        let (separation, spacing) = (&pair.separation, pair.constants.spacing);
         let volume = 0.5 * (i.volume + j.volume);
         let (mut force, mut energy, mut weights, mut slope) = ([0.0; 3], 0.0, 0.0, 0.0);
-        for (share, n) in directions(meeting)? {
+        for (share, n) in directions(pair)? {
             let along = dot(&separation.r, &n);
             let aside =
                 (separation.distance * separation.distance - along * along) / (spacing * spacing);
@@ -108,7 +109,7 @@ impl Mode for Penalty {
             }
             let weight = share * (1.0 - aside) * (1.0 - aside);
             weights += weight;
-            let strength = weight * meeting.own.modulus * volume / spacing;
+            let strength = weight * pair.own.modulus * volume / spacing;
             let root = depth.sqrt();
             for a in 0..3 {
                 force[a] += strength * depth * root * n[a];
@@ -122,11 +123,11 @@ impl Mode for Penalty {
             return None;
         }
         *stiffness += slope;
-        if meeting.own.pinball {
+        if pair.own.pinball {
             // It stores nothing: what it takes is lost.
             energy = 0.0;
             if view.dt > 0.0 {
-                let (m_i, m_j) = (view.particles.mass[i.base], view.particles.mass[j.base]);
+                let (m_i, m_j) = (view.particles.mass[i.slot], view.particles.mass[j.slot]);
                 let v = minus(&i.velocity, &j.velocity);
                 let rate = (-dot(&v, &force) / size).max(0.0);
                 let most = weights * (m_i * m_j / (m_i + m_j)) * rate / view.dt;
@@ -148,11 +149,14 @@ impl Mode for Penalty {
 /// one: the mean of both normals as they count, and the line between the two as far as no normal
 /// says how they lie, as of two corners or of faces that look the same way. `None` unless both are
 /// of the boundary.
-fn directions(meeting: &Meeting<Penalty>) -> Option<[(f64, [f64; 3]); 2]> {
-    let outward = |of: &Party| {
-        Mirrors::reflect_vector(&meeting.view.particles.boundary_normal[of.base], of.code)
+fn directions(pair: &ParticlePair<Penalty>) -> Option<[(f64, [f64; 3]); 2]> {
+    let outward = |of: &ContactParticle| {
+        Mirrors::reflect_vector(
+            &pair.view.particles.boundary_normal[of.slot],
+            of.mirror_mask,
+        )
     };
-    let (here, there) = (outward(meeting.i), outward(meeting.j));
+    let (here, there) = (outward(pair.i), outward(pair.j));
     let (a, b) = (norm(&here), norm(&there));
     if a == 0.0 || b == 0.0 {
         return None;
@@ -163,7 +167,7 @@ fn directions(meeting: &Meeting<Penalty>) -> Option<[(f64, [f64; 3]); 2]> {
     let mean: [f64; 3] = std::array::from_fn(|k| of_j * there[k] - of_i * here[k]);
     let known = norm(&mean);
     let line = (1.0 - known).max(0.0);
-    let separation = &meeting.separation;
+    let separation = &pair.separation;
     let [mean, along] = [(mean, known), (separation.r, separation.distance)]
         .map(|(v, length)| v.map(|x| x / length.max(f64::MIN_POSITIVE)));
     Some([(1.0 - line, mean), (line, along)])

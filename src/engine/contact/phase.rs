@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::ContactTable;
-use super::books::Books;
+use super::accumulators::Books;
 use super::connectivity::Connectivity;
 use super::mode::{Measurements, Scene, fill};
 use super::sums::ContactSums;
@@ -204,7 +204,7 @@ impl Contact {
         fill(&mut particles.contact_acceleration, [0.0; 3]);
         fill(&mut particles.contact_energy, 0.0);
         fill(&mut particles.contact_stiffness, 0.0);
-        let books = Books {
+        let accumulators = Accumulators {
             acceleration: Scatter::new(&mut particles.contact_acceleration),
             viscous: Scatter::new(&mut particles.acceleration),
             energy: Scatter::new(&mut particles.contact_energy),
@@ -227,7 +227,7 @@ impl Contact {
         parts.with_max_len(1).for_each(|(thread, part)| {
             part.clear();
             for task in tasks.iter().skip(thread).step_by(threads) {
-                books.book(&task.forces, part);
+                accumulators.book(&task.forces, part);
             }
         });
         for part in &self.parts {

@@ -5,9 +5,9 @@
 //! force of a pair at the mean spacing is taken off, `W_ij^{n−1} − W(Δp̄)^{n−1}` in place of
 //! `W_ij^{n−1}`, so that it sets in at zero there (theory page "Contact").
 
-use super::mode::{Meeting, Mode, PairForce};
+use super::mode::{Mode, PairForce, ParticlePair};
 use super::pair::{Between, Constants};
-use super::view::{ContactView, Party};
+use super::view::{ContactParticle, ContactView};
 use model::{ContactDirection, Potential, PotentialRange};
 
 /// Constants of an ordered pair of bodies.
@@ -21,7 +21,7 @@ pub(crate) struct PotentialPair {
     floor: f64,
     /// 1/W(Δp̄) (m^d).
     inverse_kernel: f64,
-    /// Whether forces act along the normals of the surfaces.
+    /// True if forces act along the normals of the surfaces.
     along_normal: bool,
 }
 
@@ -46,16 +46,16 @@ impl Mode for Potential {
     type Measured = ();
     type Side = ();
 
-    fn side(_: &ContactView, _: &Party) {}
+    fn side(_: &ContactView, _: &ContactParticle) {}
 
     #[inline(always)]
-    fn force(meeting: &Meeting<Self>, stiffness: &mut f64) -> Option<PairForce> {
-        let (own, kernel) = (meeting.own, &meeting.pair.kernel);
-        let distance = meeting.separation.distance;
+    fn force(pair: &ParticlePair<Self>, stiffness: &mut f64) -> Option<PairForce> {
+        let (own, kernel) = (pair.own, &pair.constants.kernel);
+        let distance = pair.separation.distance;
         let ratio = kernel.value(distance) * own.inverse_kernel;
         let slope = -kernel.slope(distance) * own.inverse_kernel;
         let curvature = kernel.curvature(distance).abs() * own.inverse_kernel;
-        let strength = own.stiffness * meeting.i.volume * meeting.j.volume;
+        let strength = own.stiffness * pair.i.volume * pair.j.volume;
         let n = f64::from(own.exponent);
         let steeper = power(ratio, own.exponent - 1);
         // With either range: the step must be short enough before the force sets in.
@@ -67,7 +67,7 @@ impl Mode for Potential {
             let rise = ratio * steeper - own.floor * (1.0 + n * (ratio - own.floor));
             let force = strength * n * (steeper - own.floor) * slope;
             PairForce {
-                force: meeting.along(force, own.along_normal),
+                force: pair.along(force, own.along_normal),
                 drag: 0.0,
                 energy: 0.5 * strength * rise,
                 loads: [0.0; 2],

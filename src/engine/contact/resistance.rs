@@ -4,7 +4,7 @@
 
 use super::friction::{Friction, Law, Slip};
 use super::pair::Pair;
-use super::view::{ContactView, Party};
+use super::view::{ContactParticle, ContactView};
 use numerics::vector::norm;
 use particles::Mirrors;
 
@@ -21,7 +21,7 @@ pub(crate) struct NormalLoad {
 
 impl NormalLoad {
     /// Adds a pair whose part of i's side is `force` (N), `own` long.
-    pub fn add(&mut self, pair: &Pair, [i, j]: [&Party; 2], own: f64, force: &[f64; 3]) {
+    pub fn add(&mut self, pair: &Pair, [i, j]: [&ContactParticle; 2], own: f64, force: &[f64; 3]) {
         self.load += own;
         for a in 0..3 {
             self.force[a] += force[a];
@@ -42,15 +42,15 @@ impl NormalLoad {
     ///
     /// Its load is `Σ_j o_ij e_ij·n`, its velocity against what it lies on `Σ_j o_ij v_ij/O_i`.
     #[must_use]
-    pub fn friction(&self, view: &ContactView, i: &Party) -> Option<(f64, Friction)> {
+    pub fn friction(&self, view: &ContactView, i: &ContactParticle) -> Option<(f64, Friction)> {
         let size = norm(&self.facing);
         if size <= 0.0 {
             return None;
         }
         let before = Slip {
-            displacement: view.particles.slip[i.base],
-            rate: view.particles.slip_rate[i.base],
-            sliding: view.particles.sliding[i.base] != 0,
+            displacement: view.particles.slip[i.slot],
+            rate: view.particles.slip_rate[i.slot],
+            sliding: view.particles.sliding[i.slot] != 0,
         };
         let normal = self.facing.map(|n| n / size);
         let velocity = self.motion.map(|v| v / self.load);
@@ -80,20 +80,20 @@ impl Shared {
         inverse_load: 0.0,
     };
 
-    fn of(view: &ContactView, particle: &Party) -> Self {
-        let (particles, base) = (view.particles, particle.base);
-        let load = particles.friction_load[base];
+    fn of(view: &ContactView, particle: &ContactParticle) -> Self {
+        let (particles, slot) = (view.particles, particle.slot);
+        let load = particles.friction_load[slot];
         if load <= 0.0 {
             return Self::NONE;
         }
-        let force = Mirrors::reflect_vector(&particles.friction_force[base], particle.code);
+        let force = Mirrors::reflect_vector(&particles.friction_force[slot], particle.mirror_mask);
         Self {
             force: force.map(|f| f / load),
-            power: particles.friction_power[base] / load,
+            power: particles.friction_power[slot] / load,
             // Of this rank's particles only, and never asked of others.
             energy: particles
                 .friction_energy
-                .get(base)
+                .get(slot)
                 .map_or(0.0, |e| e / load),
             inverse_load: 1.0 / load,
         }
@@ -118,7 +118,7 @@ pub(super) struct PairFriction {
 
 impl PairFriction {
     /// Of the receiver `i`.
-    pub fn of(view: &ContactView, i: &Party) -> Self {
+    pub fn of(view: &ContactView, i: &ContactParticle) -> Self {
         Self {
             here: Shared::of(view, i),
             force: [0.0; 3],
@@ -131,10 +131,18 @@ impl PairFriction {
 
     /// Friction and damping of the pair with `j`: `o_ij T_i/O_i − o_ji T_j/O_j`, its heat and its
     /// energy, given `o_ij` and `o_ji` (N).
-    pub fn pair(&mut self, view: &ContactView, [i, j]: [&Party; 2], [own, their]: [f64; 2]) {
+    pub fn pair(
+        &mut self,
+        view: &ContactView,
+        [i, j]: [&ContactParticle; 2],
+        [own, their]: [f64; 2],
+    ) {
         (self.force, self.energy, self.heat) = ([0.0; 3], 0.0, 0.0);
-        let pair = view.table.pair(i.kind, j.kind);
-        let (law, back) = (&pair.friction, &view.table.pair(j.kind, i.kind).friction);
+        let pair = view.table.pair(i.size_class, j.size_class);
+        let (law, back) = (
+            &pair.friction,
+            &view.table.pair(j.size_class, i.size_class).friction,
+        );
         if !law.is_any() {
             return;
         }

@@ -8,7 +8,7 @@ mod friction;
 
 use friction::SurfaceFriction;
 
-use super::force::Borne;
+use super::force::ContactStress;
 use super::friction::Law;
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
@@ -16,7 +16,7 @@ use model::{Body, Case, RigidSurface};
 use numerics::exact_sum::ExactSum;
 use numerics::gathered_sums::{self, GatheredSums};
 use numerics::vector::{cross, dot};
-use particles::neighbours::Kinds;
+use particles::neighbours::SizeClasses;
 use particles::{GRAIN, ParticleStore, Scatter};
 
 /// What a surface does to one particle.
@@ -39,7 +39,7 @@ pub(super) struct Push {
     pub heat: f64,
 }
 
-/// Constants of a surface and a kind of particles that it acts on.
+/// Constants of a surface and a size class of particles that it acts on.
 #[derive(Debug, Clone, Copy)]
 struct Penalty {
     /// Stiffness over volume, `κ M/Δp²` (Pa/m²).
@@ -54,9 +54,9 @@ struct Penalty {
 /// The surfaces of a case and what they do, kept from step to step.
 #[derive(Debug, Default)]
 pub(crate) struct SurfaceForces {
-    /// By surface and kind of particles; absent where a surface does not act.
+    /// By surface and size class of particles; absent where a surface does not act.
     penalties: Vec<Vec<Option<Penalty>>>,
-    /// By kind: stiffness over volume of the spring that sticks (Pa/m²).
+    /// By size class: stiffness over volume of the spring that sticks (Pa/m²).
     sticks: Vec<f64>,
     surfaces: Vec<RigidSurface>,
     /// Force of each surface, and its torque about the axis that it turns about.
@@ -71,13 +71,13 @@ pub(crate) struct SurfaceForces {
 
 impl SurfaceForces {
     pub(super) fn new(case: &Case) -> Self {
-        let kinds = Kinds::new(case);
-        let bodies: Vec<Body> = (0..kinds.count())
-            .map(|kind| kinds.body_of_size(case, kind))
+        let size_classes = SizeClasses::new(case);
+        let bodies: Vec<Body> = (0..size_classes.count())
+            .map(|size_class| size_classes.body_of_size(case, size_class))
             .collect();
         let penalties = case.loads.surfaces.iter().map(|surface| {
-            let penalty = bodies.iter().enumerate().map(|(kind, body)| {
-                let acts = surface.bodies[kinds.body(kind)];
+            let penalty = bodies.iter().enumerate().map(|(size_class, body)| {
+                let acts = surface.bodies[size_classes.body(size_class)];
                 acts.then(|| Penalty::new(case, body, surface))
             });
             penalty.collect()
@@ -242,16 +242,16 @@ impl SurfaceForces {
 
     /// What the forces of the last step carry through particles, with their indices: the matter
     /// between a particle and a surface is all its own.
-    pub(super) fn borne(&self) -> impl Iterator<Item = (usize, Borne)> {
+    pub(super) fn carried(&self) -> impl Iterator<Item = (usize, ContactStress)> {
         self.pushes.iter().flatten().map(|push| {
             let press = dot(&push.force, &push.normal);
-            let mut borne = Borne::default();
-            borne.add(
+            let mut carried = ContactStress::default();
+            carried.add(
                 &push.force,
                 &push.normal.map(|n| press * n),
                 &push.normal.map(|n| push.gap * n),
             );
-            (push.particle, borne)
+            (push.particle, carried)
         })
     }
 
@@ -310,17 +310,17 @@ impl View<'_> {
         }
     }
 
-    /// The kind of a particle, and its reference volume (m^d).
-    pub(super) fn kind(&self, i: usize) -> (usize, f64) {
+    /// The size class of a particle, and its reference volume (m^d).
+    pub(super) fn size_class(&self, i: usize) -> (usize, f64) {
         let (body, mass) = (self.particles.body[i] as usize, self.particles.mass[i]);
         let volume = mass * self.table.inverse_density(body);
-        (self.table.kind(body, mass), volume)
+        (self.table.size_class(body, mass), volume)
     }
 
     /// What surface `n` does to particle `i`, if that is near it.
     fn push(&self, i: usize, n: usize) -> Option<Push> {
-        let (kind, volume) = self.kind(i);
-        let penalty = self.penalties[n][kind].as_ref()?;
+        let (size_class, volume) = self.size_class(i);
+        let penalty = self.penalties[n][size_class].as_ref()?;
         let placed = self.placed(n);
         let x = &self.particles.position[i];
         let local = placed.local(x);

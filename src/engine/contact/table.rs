@@ -1,12 +1,12 @@
-//! Parameters of every pair of kinds of particles, computed once at set-up.
+//! Parameters of every pair of size classes of particles, computed once at set-up.
 
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use model::{Body, Case, ContactMode, SelfContact};
 use numerics::kernel::{Kernel, SUPPORT};
-use particles::neighbours::{ForeignTable, Groups, Kinds};
+use particles::neighbours::{ForeignTable, Groups, SizeClasses};
 use particles::{HaloPhase, Owner};
 
-/// All pairs of kinds.
+/// All pairs of size classes.
 #[derive(Debug, Clone)]
 pub struct ContactTable {
     /// The kernel that contact weights with.
@@ -30,13 +30,13 @@ impl ContactTable {
     /// Table of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
-        let kinds = Kinds::new(case);
-        let n = kinds.count();
+        let size_classes = SizeClasses::new(case);
+        let n = size_classes.count();
         let groups = Groups::new(case);
         let mut table = Self {
             kernel: Kernel::new(case.dimension),
             foreign: ForeignTable {
-                kinds,
+                size_classes,
                 class: vec![None; n * n],
                 reach2: vec![0.0; n * n],
                 group_range: vec![0.0; groups.count() * groups.count()],
@@ -44,7 +44,7 @@ impl ContactTable {
                     .bodies
                     .iter()
                     .any(|body| body.lattice.sizes.is_some())
-                    .then(|| Kinds::longest_range(case)),
+                    .then(|| SizeClasses::longest_range(case)),
             },
             groups,
             halo: HaloPhase::STRESS,
@@ -65,7 +65,7 @@ impl ContactTable {
                 .push(if bursts { 1.0 } else { f64::INFINITY });
         }
         let bodies: Vec<Body> = (0..n)
-            .map(|kind| table.foreign.kinds.body_of_size(case, kind))
+            .map(|size_class| table.foreign.size_classes.body_of_size(case, size_class))
             .collect();
         for a in 0..n {
             for b in 0..n {
@@ -82,8 +82,8 @@ impl ContactTable {
     }
 
     /// Adds the next pair.
-    fn add(&mut self, case: &Case, kinds: [usize; 2], bodies: [&Body; 2]) {
-        let [a, b] = kinds.map(|kind| self.foreign.kinds.body(kind));
+    fn add(&mut self, case: &Case, size_classes: [usize; 2], bodies: [&Body; 2]) {
+        let [a, b] = size_classes.map(|size_class| self.foreign.size_classes.body(size_class));
         let mode = mode_between(case, a, b);
         let pair = Pair::new(case, &self.kernel, bodies, &mode);
         let modulus = bodies.map(|body| case.materials[body.material].p_wave_modulus());
@@ -105,7 +105,7 @@ impl ContactTable {
         let (halo, owner) = needs(&mode);
         self.halo |= halo;
         self.owners |= owner;
-        let (at, range) = (self.at(kinds[0], kinds[1]), SUPPORT * pair.h);
+        let (at, range) = (self.at(size_classes[0], size_classes[1]), SUPPORT * pair.h);
         self.foreign.class[at] = mode.class();
         self.foreign.reach2[at] = range * range;
         if a != b {
@@ -120,7 +120,7 @@ impl ContactTable {
         ranges.fold(0.0, f64::max)
     }
 
-    /// Constants of a mode for a receiver of kind `a` and a neighbour of kind `b`.
+    /// Constants of a mode for a receiver of size class `a` and a neighbour of size class `b`.
     #[inline(always)]
     pub(super) fn own<M: Listed>(&self, a: usize, b: usize) -> &M::Pair {
         &M::list(&self.modes)[self.at(a, b)]
@@ -128,33 +128,33 @@ impl ContactTable {
 
     #[inline(always)]
     fn at(&self, a: usize, b: usize) -> usize {
-        a * self.foreign.kinds.count() + b
+        a * self.foreign.size_classes.count() + b
     }
 
-    /// Parameters of a receiver of kind `a` and a neighbour of kind `b`.
+    /// Parameters of a receiver of size class `a` and a neighbour of size class `b`.
     #[inline]
     #[must_use]
     pub fn pair(&self, a: usize, b: usize) -> &Pair {
         &self.pairs[self.at(a, b)]
     }
 
-    /// The kind of a particle of a body with a mass (kg).
+    /// The size class of a particle of a body with a mass (kg).
     #[inline(always)]
     #[must_use]
-    pub fn kind(&self, body: usize, mass: f64) -> usize {
-        self.foreign.kinds.of(body, mass)
+    pub fn size_class(&self, body: usize, mass: f64) -> usize {
+        self.foreign.size_classes.of(body, mass)
     }
 
     /// How many bodies there are.
     #[must_use]
     pub fn bodies(&self) -> usize {
-        self.foreign.kinds.bodies()
+        self.foreign.size_classes.bodies()
     }
 
     /// Parameters of the smallest particles of two bodies, if they have contact beyond the SPH sums.
     #[must_use]
     pub fn between(&self, a: usize, b: usize) -> Option<&Pair> {
-        let [a, b] = [a, b].map(|body| self.foreign.kinds.smallest(body));
+        let [a, b] = [a, b].map(|body| self.foreign.size_classes.smallest(body));
         self.foreign.class[self.at(a, b)].map(|_| self.pair(a, b))
     }
 
@@ -178,19 +178,19 @@ impl ContactTable {
         self.owners
     }
 
-    /// Whether there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
+    /// True if there is contact beyond the SPH sums: of pairs of bodies, or with rigid surfaces.
     #[must_use]
     pub fn is_active(&self) -> bool {
         self.owners.contains(Owner::CONTACT)
     }
 
-    /// Whether any pair of bodies has contact beyond the SPH sums.
+    /// True if any pair of bodies has contact beyond the SPH sums.
     #[must_use]
     pub fn has_pairs(&self) -> bool {
         self.foreign.class.iter().any(Option::is_some)
     }
 
-    /// Whether any pair of bodies has friction or damping.
+    /// True if any pair of bodies has friction or damping.
     #[must_use]
     pub fn has_friction(&self) -> bool {
         let mut pairs = self.pairs.iter();

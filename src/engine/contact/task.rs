@@ -37,11 +37,11 @@ impl Task {
                 if neighbours.iter().all(|list| list.is_empty()) {
                     continue;
                 }
-                let i = view.party(index);
+                let i = view.particle(index);
                 let load = normal_load(view, &i, &neighbours);
                 let friction = load.friction(view, &i);
                 self.friction
-                    .extend(friction.map(|(load, friction)| (i.base, load, friction)));
+                    .extend(friction.map(|(load, friction)| (i.slot, load, friction)));
             }
         }
     }

@@ -23,16 +23,16 @@ pub struct ContactView<'a> {
 
 /// One end of a contact pair.
 #[derive(Clone, Copy)]
-pub(crate) struct Party {
+pub(crate) struct ContactParticle {
     /// Index in the store.
-    pub base: usize,
+    pub slot: usize,
     pub body: usize,
     /// Of particles, as contact tells them apart.
-    pub kind: usize,
+    pub size_class: usize,
     /// Reference volume (m^d).
     pub volume: f64,
     /// The planes that it is mirrored by.
-    pub code: u8,
+    pub mirror_mask: u8,
     pub position: [f64; 3],
     pub velocity: [f64; 3],
 }
@@ -55,17 +55,17 @@ impl<'a> ContactView<'a> {
     }
 
     #[inline(always)]
-    pub(crate) fn party(&self, index: u32) -> Party {
+    pub(crate) fn particle(&self, index: u32) -> ContactParticle {
         let image = self.images[index as usize];
-        let base = image.base();
-        let body = self.particles.body[base] as usize;
+        let slot = image.slot();
+        let body = self.particles.body[slot] as usize;
         let record = &self.motion[index as usize];
-        Party {
-            base,
+        ContactParticle {
+            slot,
             body,
-            kind: self.table.kind(body, record.mass),
+            size_class: self.table.size_class(body, record.mass),
             volume: record.mass * self.table.inverse_density(body),
-            code: image.code(),
+            mirror_mask: image.mirror_mask(),
             position: record.position,
             velocity: record.velocity,
         }
@@ -73,9 +73,10 @@ impl<'a> ContactView<'a> {
 
     /// The normal of the surface between two particles: that of both, from their bodies' corrected
     /// gradients, into the first one's body; none inside bodies.
-    pub(super) fn normal(&self, i: &Party, j: &Party) -> Option<[f64; 3]> {
-        let inward =
-            |of: &Party| Mirrors::reflect_vector(&self.particles.gradient_shift[of.base], of.code);
+    pub(super) fn normal(&self, i: &ContactParticle, j: &ContactParticle) -> Option<[f64; 3]> {
+        let inward = |of: &ContactParticle| {
+            Mirrors::reflect_vector(&self.particles.gradient_shift[of.slot], of.mirror_mask)
+        };
         let (a, b) = (inward(i), inward(j));
         let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let size = square(&n).sqrt();
@@ -95,7 +96,7 @@ pub(super) struct Separation {
 
 impl Separation {
     #[inline(always)]
-    pub fn between(i: &Party, j: &Party) -> Self {
+    pub fn between(i: &ContactParticle, j: &ContactParticle) -> Self {
         let r = [
             i.position[0] - j.position[0],
             i.position[1] - j.position[1],

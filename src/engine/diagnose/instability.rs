@@ -8,7 +8,7 @@
 //! below the sum itself, but for heat of the reference state that an expansion may take.
 
 use super::ledger::RunState;
-use crate::domain::Outset;
+use crate::domain::InitialLayout;
 use crate::loads::Loads;
 use comm::Comm;
 use model::{Body, Case, NumericalLimits};
@@ -35,13 +35,13 @@ pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
         let square = strain * strain * material.p_wave_modulus() / reference;
         0.5 * mass * (square + ROUNDING * natural * natural)
     };
-    let counts = Outset::counts(case, comm);
+    let counts = InitialLayout::counts(case, comm);
     let bodies = case.bodies.iter().zip(&counts);
     let deforming = bodies.filter(|(body, _)| body.rigid.is_none());
     deforming.map(of_body).sum()
 }
 
-/// Whether the kinetic energy, as of the last totals, can have come from what there was, what has
+/// True if the kinetic energy, as of the last totals, can have come from what there was, what has
 /// been put in and the `hidden` energy (J), or from `most` times that.
 pub(crate) fn is_explained(state: &RunState, hidden: f64, most: f64) -> bool {
     let first = &state.initial;

@@ -37,7 +37,7 @@ impl NumericalFailure {
         Self::Step,
     ];
 
-    /// Whether taking particles out is no cure: what is NaN has reached its neighbours, and
+    /// True if taking particles out is no cure: what is NaN has reached its neighbours, and
     /// energy that comes from nowhere is everybody's.
     #[must_use]
     pub fn is_of_all(self) -> bool {
@@ -118,7 +118,7 @@ impl Limits {
         }
     }
 
-    /// Whether a particle's numbers are numbers and in range whatever its body is. Where it says
+    /// True if a particle's numbers are numbers and in range whatever its body is. Where it says
     /// no, [`Self::check`] knows.
     #[inline(always)]
     pub(crate) fn surely_holds(&self, rho: f64, moved: &Moved) -> bool {

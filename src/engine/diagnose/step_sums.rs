@@ -33,7 +33,7 @@ pub(crate) struct StepSums {
     bodies: usize,
     /// Particles that have crossed a symmetry plane, by task.
     crossed: Vec<Vec<usize>>,
-    /// Whether there is friction or damping between bodies, whose heat is summed.
+    /// True if there is friction or damping between bodies, whose heat is summed.
     friction: bool,
     joint: Joint,
 }

@@ -160,7 +160,7 @@ fn floor(comm: &Comm, work: &[u32]) -> u32 {
 /// Joins the ends that a task has found of a slab, if any, with those of the others.
 fn tell_ends(all: &Least, (place, ends): (usize, [u64; 2])) {
     if place != usize::MAX {
-        all.tell(2 * place, ends);
+        all.lower(2 * place, ends);
     }
 }
 

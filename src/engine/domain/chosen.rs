@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::needs::{Found, MYSELF};
+use super::needs::{MYSELF, Needed};
 use numerics::collector::Collector;
 
 /// For each peer, one after the other, the particles that it needs. Kept from step to step.
 #[derive(Debug, Default)]
 pub(super) struct Chosen {
     pub(super) particles: Vec<u32>,
-    /// The codes of the images that it needs of each (a set of eight bits).
-    pub(super) codes: Vec<u8>,
+    /// The mirror masks of the images that it needs of each (a set of eight bits).
+    pub(super) mirror_masks: Vec<u8>,
     /// Where those of each peer end.
     ends: Vec<usize>,
 }
@@ -19,20 +19,20 @@ impl Chosen {
     /// Nothing for so many peers.
     pub(super) fn clear(&mut self, peers: usize) {
         self.particles.clear();
-        self.codes.clear();
+        self.mirror_masks.clear();
         self.ends.clear();
         self.ends.resize(peers, 0);
     }
 
     /// Takes what tasks have found, each in the order of peers, for so many of them.
-    pub(super) fn sort(&mut self, found: &[Vec<Found>], peers: usize, collector: &mut Collector) {
+    pub(super) fn sort(&mut self, found: &[Vec<Needed>], peers: usize, collector: &mut Collector) {
         self.clear(peers);
         let tasks = found.len();
         let peer = |k: usize| u16::try_from(k / tasks).unwrap_or(MYSELF);
         let run = |k: usize| of_peer(&found[k % tasks], peer(k)).iter();
         let all = (peers * tasks, 1);
         collector.extend(&mut self.particles, all, |k| run(k).map(|e| e.particle));
-        collector.extend(&mut self.codes, all, |k| run(k).map(|e| e.needs));
+        collector.extend(&mut self.mirror_masks, all, |k| run(k).map(|e| e.needs));
         let ends = collector.ends().chunks_exact(tasks.max(1));
         for (end, of_tasks) in self.ends.iter_mut().zip(ends) {
             *end = of_tasks[tasks - 1];
@@ -46,12 +46,12 @@ impl Chosen {
     }
 
     pub(super) fn memory(&self) -> usize {
-        4 * self.particles.capacity() + self.codes.capacity() + 8 * self.ends.capacity()
+        4 * self.particles.capacity() + self.mirror_masks.capacity() + 8 * self.ends.capacity()
     }
 }
 
 /// What a task has found for a peer: entries are in the order of peers.
-pub(super) fn of_peer(found: &[Found], peer: u16) -> &[Found] {
+pub(super) fn of_peer(found: &[Needed], peer: u16) -> &[Needed] {
     let start = found.partition_point(|entry| entry.peer < peer);
     let end = found.partition_point(|entry| entry.peer <= peer);
     &found[start..end]

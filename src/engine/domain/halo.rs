@@ -6,9 +6,9 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::chosen::{Chosen, of_peer};
-use super::needs::{Extent, Finder, Found, MYSELF};
+use super::needs::{Extent, Finder, MYSELF, Needed};
 use super::nested::NestedSlabs;
-use super::shown::Shown;
+use super::payload::Payload;
 use comm::{Comm, Exchange, Traffic};
 use numerics::collector::Collector;
 use particles::{
@@ -30,7 +30,7 @@ pub struct Halo {
     mirrors: Mirrors,
     exchange: Exchange,
     /// Extents to and from all ranks that are near.
-    greetings: Exchange,
+    extent_exchange: Exchange,
     /// The box around this rank's particles.
     mine: Extent,
     /// The ranks to talk to, ascending.
@@ -46,8 +46,8 @@ pub struct Halo {
     others: Vec<Image>,
     /// How many of them are of lower ranks or stand behind a plane.
     below: usize,
-    /// What the tasks found, one after the other: see [`Found`].
-    found: Vec<Vec<Found>>,
+    /// What the tasks found, one after the other: see [`Needed`].
+    found: Vec<Vec<Needed>>,
     collector: Collector,
 }
 
@@ -62,7 +62,7 @@ impl Halo {
             rank: 0,
             mirrors,
             exchange: Exchange::default(),
-            greetings: Exchange::default(),
+            extent_exchange: Exchange::default(),
             mine: Extent::EMPTY,
             peers: Vec::new(),
             theirs: Vec::new(),
@@ -97,7 +97,7 @@ impl Halo {
         self.choose(active, &reach);
         let (chosen, store) = (&self.chosen, active.particles);
         fill(&mut self.exchange, |k, message| {
-            message.extend_from_slice(&chosen.codes[chosen.of(k)]);
+            message.extend_from_slice(&chosen.mirror_masks[chosen.of(k)]);
             store.pack(HaloPhase::MOTION, &chosen.particles[chosen.of(k)], message);
         });
         self.exchange.post_sizes(comm);
@@ -170,19 +170,19 @@ impl Halo {
         comm: &Comm,
         particles: &ParticleStore,
         phase: HaloPhase,
-        shown: Option<&dyn Shown>,
+        payload: Option<&dyn Payload>,
     ) {
-        let size = particles.bytes_per_particle(phase) + shown.map_or(0, Shown::size);
+        let size = particles.bytes_per_particle(phase) + payload.map_or(0, Payload::size);
         let chosen = &self.chosen;
         fill(&mut self.exchange, |k, message| {
             let sent = &chosen.particles[chosen.of(k)];
             particles.pack(phase, sent, message);
-            if let Some(shown) = shown {
+            if let Some(payload) = payload {
                 let fields = message.len();
                 message.resize(sent.len() * size, 0);
-                let slots = message[fields..].par_chunks_exact_mut(shown.size());
+                let slots = message[fields..].par_chunks_exact_mut(payload.size());
                 let slots = slots.zip(sent).with_min_len(SHARE);
-                slots.for_each(|(slot, &i)| slot.copy_from_slice(shown.of(i as usize)));
+                slots.for_each(|(slot, &i)| slot.copy_from_slice(payload.of(i as usize)));
             }
         });
         for (k, count) in self.received.iter().enumerate() {
@@ -196,7 +196,7 @@ impl Halo {
         &mut self,
         particles: &mut ParticleStore,
         phase: HaloPhase,
-        shown: Option<&mut dyn Shown>,
+        payload: Option<&mut dyn Payload>,
     ) {
         self.exchange.wait();
         let (peers, first) = (self.exchange.incoming_all(), particles.owned());
@@ -204,8 +204,8 @@ impl Halo {
         particles.unpack_all(phase, first, received, |k| {
             &peers[k].incoming()[..received[k] * size]
         });
-        if let Some(shown) = shown {
-            let mut rest = shown.heard(particles.halo());
+        if let Some(payload) = payload {
+            let mut rest = payload.received(particles.halo());
             for (peer, count) in peers.iter().zip(received) {
                 let values = &peer.incoming()[count * size..];
                 let (slots, after) = rest.split_at_mut(values.len());
@@ -275,16 +275,16 @@ impl Halo {
     #[must_use]
     pub fn traffic(&self) -> Traffic {
         let mut all = self.exchange.traffic;
-        all += self.greetings.traffic;
+        all += self.extent_exchange.traffic;
         all
     }
 
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let found = |found: &Vec<Found>| size_of::<Found>() * found.capacity();
+        let found = |found: &Vec<Needed>| size_of::<Needed>() * found.capacity();
         self.exchange.memory()
-            + self.greetings.memory()
+            + self.extent_exchange.memory()
             + 8 * (self.received.capacity() + self.peers.capacity())
             + size_of::<Extent>() * self.theirs.capacity()
             + size_of::<Image>() * (self.own.capacity() + self.others.capacity())
@@ -316,22 +316,22 @@ impl Halo {
         let range = 2.0 * farthest;
         self.peers.clear();
         slabs.near(self.rank, range, |other| self.peers.push(other));
-        let (greetings, mine) = (&mut self.greetings, self.mine);
-        greetings.set_peers(self.peers.iter().copied());
-        for k in 0..greetings.peers() {
-            greetings
+        let (extent_exchange, mine) = (&mut self.extent_exchange, self.mine);
+        extent_exchange.set_peers(self.peers.iter().copied());
+        for k in 0..extent_exchange.peers() {
+            extent_exchange
                 .outgoing(k)
                 .extend_from_slice(bytemuck::bytes_of(&mine));
-            greetings.expect(k, size_of::<Extent>());
+            extent_exchange.expect(k, size_of::<Extent>());
         }
-        greetings.post(comm);
-        greetings.wait();
+        extent_exchange.post(comm);
+        extent_exchange.wait();
         self.peers.clear();
         self.theirs.clear();
-        for k in 0..greetings.peers() {
-            let extent: Extent = bytemuck::pod_read_unaligned(greetings.incoming(k));
+        for k in 0..extent_exchange.peers() {
+            let extent: Extent = bytemuck::pod_read_unaligned(extent_exchange.incoming(k));
             if mine.may_need(&extent) {
-                self.peers.push(greetings.rank(k));
+                self.peers.push(extent_exchange.rank(k));
                 self.theirs.push(extent);
             }
         }
@@ -374,10 +374,10 @@ impl Halo {
     }
 }
 
-/// The images of a particle that `needs` names, from a code on.
-fn images(base: usize, needs: u8, first: u8) -> impl Iterator<Item = Image> {
-    let codes = (first..8).filter(move |code| needs >> code & 1 == 1);
-    codes.map(move |code| Image::new(base, code))
+/// The images of a particle that `needs` names, from a mirror mask on.
+fn images(slot: usize, needs: u8, first: u8) -> impl Iterator<Item = Image> {
+    let mirror_masks = (first..8).filter(move |mirror_mask| needs >> mirror_mask & 1 == 1);
+    mirror_masks.map(move |mirror_mask| Image::new(slot, mirror_mask))
 }
 
 /// Has all threads fill the messages to all peers.

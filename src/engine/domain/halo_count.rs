@@ -20,7 +20,7 @@ pub(super) struct HaloCount {
     boxes: Least,
     extents: Vec<Extent>,
     /// Particles that each rank would hear of, as threads find them.
-    heard: Vec<AtomicU64>,
+    received: Vec<AtomicU64>,
     /// The same of all ranks.
     halos: Vec<u64>,
 }
@@ -75,13 +75,13 @@ impl HaloCount {
             let (mut owner, mut region, mut extent) = (0, NOWHERE, Extent::EMPTY);
             for (k, position) in positions.iter().enumerate() {
                 if !region.holds(position) {
-                    tell(boxes, owner, extent);
+                    lower_box(boxes, owner, extent);
                     owner = slabs.owner(position);
                     (region, extent) = (slabs.region(owner), Extent::EMPTY);
                 }
                 extent.add(position, reach(task * SHARE + k));
             }
-            tell(boxes, owner, extent);
+            lower_box(boxes, owner, extent);
         });
         self.boxes.join(comm);
         self.extents.clear();
@@ -96,9 +96,9 @@ impl HaloCount {
         positions: &[[f64; 3]],
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) {
-        self.heard.clear();
-        self.heard.resize_with(slabs.ranks(), AtomicU64::default);
-        let (heard, extents) = (&self.heard, &self.extents);
+        self.received.clear();
+        self.received.resize_with(slabs.ranks(), AtomicU64::default);
+        let (received, extents) = (&self.received, &self.extents);
         let farthest = extents.iter().map(|extent| extent.reach);
         let farthest = farthest.fold(0.0, f64::max);
         let tasks = positions.par_chunks(SHARE).enumerate();
@@ -118,29 +118,29 @@ impl HaloCount {
                     let there = &extents[other];
                     let is_near = there.is_near((position, position), reach + there.reach);
                     if is_near && other != owner {
-                        heard[other].fetch_add(1, Relaxed);
+                        received[other].fetch_add(1, Relaxed);
                     }
                 });
             }
         });
         self.halos.clear();
-        let heard = self.heard.iter_mut().map(|heard| *heard.get_mut());
-        self.halos.extend(heard);
+        let received = self.received.iter_mut().map(|received| *received.get_mut());
+        self.halos.extend(received);
         comm.sum_u64(&mut self.halos);
     }
 
     /// Bytes allocated.
     pub(super) fn memory(&self) -> usize {
         self.boxes.memory()
-            + 8 * (self.heard.capacity() + self.halos.capacity())
+            + 8 * (self.received.capacity() + self.halos.capacity())
             + size_of::<Extent>() * self.extents.capacity()
     }
 }
 
 /// Joins what a task has found of a rank, if anything, with what the others have.
-fn tell(boxes: &Least, rank: usize, extent: Extent) {
+fn lower_box(boxes: &Least, rank: usize, extent: Extent) {
     if !extent.is_empty() {
-        boxes.tell(Extent::WORDS * rank, extent.words());
+        boxes.lower(Extent::WORDS * rank, extent.words());
     }
 }
 
@@ -175,10 +175,10 @@ mod tests {
             count.count(&Comm::solo(), &NestedSlabs::new(0, vec![0.5; 40]), &positions, &|_| 1.0);
             count.count(&Comm::solo(), &slabs, &positions, &|i| reach[i]);
             let all = (positions.as_slice(), reach.as_slice());
-            let told = tally(&slabs, &Mirrors::default(), all, |_| {});
-            let told: Vec<u64> = told.iter().map(|tally| tally.halo).collect();
-            prop_assert_eq!(&count.halos, &told);
-            prop_assert_eq!(count.largest(), told.into_iter().max().unwrap());
+            let counted = tally(&slabs, &Mirrors::default(), all, |_| {});
+            let counted: Vec<u64> = counted.iter().map(|tally| tally.halo).collect();
+            prop_assert_eq!(&count.halos, &counted);
+            prop_assert_eq!(count.largest(), counted.into_iter().max().unwrap());
         }
     }
 }

@@ -161,7 +161,7 @@ impl Histogram {
 
     /// After [`Self::sum`] tells the faces (m) that split the work of a slab, lowest first, so that
     /// the parts of the whole below them are those given.
-    pub fn split(&self, slab: usize, parts: impl Iterator<Item = f64>, mut tell: impl FnMut(f64)) {
+    pub fn split(&self, slab: usize, parts: impl Iterator<Item = f64>, mut emit: impl FnMut(f64)) {
         let span = &self.spans[slab];
         let total = self.total(slab);
         #[allow(
@@ -183,13 +183,13 @@ impl Histogram {
                 let under = wanted.saturating_sub(below);
                 let at = if under < over { bin } else { bin + 1 };
                 #[allow(clippy::cast_precision_loss, reason = "few bins")]
-                tell(span.lower + span.width * at as f64);
+                emit(span.lower + span.width * at as f64);
                 target = targets.next();
             }
             below += count;
         }
         while target.is_some() {
-            tell(f64::INFINITY);
+            emit(f64::INFINITY);
             target = targets.next();
         }
     }

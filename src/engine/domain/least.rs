@@ -21,7 +21,7 @@ impl Least {
     }
 
     /// Tells words, from a place on; any thread may.
-    pub(super) fn tell(&self, place: usize, words: impl IntoIterator<Item = u64>) {
+    pub(super) fn lower(&self, place: usize, words: impl IntoIterator<Item = u64>) {
         for (found, word) in self.found[place..].iter().zip(words) {
             found.fetch_min(word, Relaxed);
         }

@@ -8,35 +8,35 @@ use populate::Brick;
 impl NestedSlabs {
     /// Tells the ranks, ascending, that may own anything within a range (m) of the region of a rank that
     /// may, this one left out. The two of a pair hear of each other or neither does.
-    pub(super) fn near(&self, rank: usize, range: f64, mut tell: impl FnMut(usize)) {
+    pub(super) fn near(&self, rank: usize, range: f64, mut emit: impl FnMut(usize)) {
         let region = self.region(rank);
         if !region.is_empty() {
             self.descend_to(&Within { region, range }, |other| {
                 if other != rank {
-                    tell(other);
+                    emit(other);
                 }
             });
         }
     }
 
     /// Tells the ranks, ascending, that may own anything within a range (m) of a position (m).
-    pub(super) fn near_place(&self, position: &[f64; 3], range: f64, tell: impl FnMut(usize)) {
+    pub(super) fn near_place(&self, position: &[f64; 3], range: f64, emit: impl FnMut(usize)) {
         let [lower, upper] = [*position; 2];
         let region = Brick { lower, upper };
-        self.descend_to(&Within { region, range }, tell);
+        self.descend_to(&Within { region, range }, emit);
     }
 
-    fn descend_to(&self, within: &Within, mut tell: impl FnMut(usize)) {
-        self.descend((self.whole(), Brick::OPEN), within, &mut tell);
+    fn descend_to(&self, within: &Within, mut emit: impl FnMut(usize)) {
+        self.descend((self.whole(), Brick::OPEN), within, &mut emit);
     }
 
     /// Tells the ranks of a slab, and of a part of space, that are within a range.
-    fn descend(&self, (slab, brick): (Slab, Brick), within: &Within, tell: &mut impl FnMut(usize)) {
+    fn descend(&self, (slab, brick): (Slab, Brick), within: &Within, emit: &mut impl FnMut(usize)) {
         if brick.is_empty() || !within.reaches(&brick) {
             return;
         }
         if !slab.is_cut() {
-            tell(slab.ranks().start);
+            emit(slab.ranks().start);
             return;
         }
         let (axis, parts) = (self.axis_of(slab), slab.parts());
@@ -52,7 +52,7 @@ impl NestedSlabs {
             if brick.lower[axis] > upper {
                 break;
             }
-            self.descend((slab.part(part, parts), brick), within, tell);
+            self.descend((slab.part(part, parts), brick), within, emit);
         }
     }
 }
@@ -68,7 +68,7 @@ struct Within {
 pub(super) const MARGIN: f64 = 1.001;
 
 impl Within {
-    /// Whether it reaches a box; that box's own region reaches this one if so.
+    /// True if it reaches a box; that box's own region reaches this one if so.
     fn reaches(&self, brick: &Brick) -> bool {
         let gap = |a: usize| {
             let before = brick.lower[a] - self.region.upper[a];
@@ -99,7 +99,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
 
-        /// Who is near is who a look at all regions finds, and whoever hears of another is heard of.
+        /// Who is near is who a look at all regions finds, and two ranks are near each other or neither is.
         #[test]
         fn all_that_is_near_is_told(
             faces in prop::collection::vec(-6_i8..=6, 0..50),
@@ -119,10 +119,10 @@ mod tests {
                     let there = slabs.region(*other);
                     *other != rank && !region.is_empty() && !there.is_empty() && within.reaches(&there)
                 };
-                let mut told = Vec::new();
-                slabs.near(rank, range, |other| told.push(other));
-                prop_assert_eq!(&told, &all.clone().filter(is_near).collect::<Vec<_>>());
-                for other in told {
+                let mut found = Vec::new();
+                slabs.near(rank, range, |other| found.push(other));
+                prop_assert_eq!(&found, &all.clone().filter(is_near).collect::<Vec<_>>());
+                for other in found {
                     let mut is_told = false;
                     slabs.near(other, range, |back| is_told |= back == rank);
                     prop_assert!(is_told);

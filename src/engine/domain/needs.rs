@@ -1,7 +1,7 @@
 //! Who needs which particles, and which images of them.
 
 use numerics::ordered::{disordered, ordered};
-use particles::{Mirrors, codes};
+use particles::{Mirrors, mirror_masks};
 
 /// The box around a rank's particles, and how far these reach: what it tells those that are near before the
 /// exchange.
@@ -69,7 +69,7 @@ impl Extent {
         }
     }
 
-    /// Whether particles of the two may be within each other's reach; whoever asks gets the same
+    /// True if particles of the two may be within each other's reach; whoever asks gets the same
     /// answer. Images behind planes are never nearer than their particles.
     pub(super) fn may_need(&self, other: &Self) -> bool {
         if self.is_empty() || other.is_empty() {
@@ -78,7 +78,7 @@ impl Extent {
         self.is_near((&other.lower, &other.upper), self.reach + other.reach)
     }
 
-    /// Whether another box between two corners (m), which may be a place, is within a range (m) of this one.
+    /// True if another box between two corners (m), which may be a place, is within a range (m) of this one.
     #[inline]
     pub(super) fn is_near(&self, (lower, upper): (&[f64; 3], &[f64; 3]), range: f64) -> bool {
         let square = |a: usize| {
@@ -89,16 +89,16 @@ impl Extent {
     }
 }
 
-/// A particle that a rank needs (this rank itself, or the peer of an index), and the codes of the
+/// A particle that a rank needs (this rank itself, or the peer of an index), and the mirror masks of the
 /// images that it needs of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Found {
+pub(super) struct Needed {
     pub(super) particle: u32,
     pub(super) needs: u8,
     pub(super) peer: u16,
 }
 
-/// `Found::peer` of this rank itself.
+/// `Needed::peer` of this rank itself.
 pub(super) const MYSELF: u16 = u16::MAX;
 
 /// Tells who needs a particle.
@@ -143,7 +143,7 @@ impl<'a> Finder<'a> {
 
     /// Notes who needs particle `i` at `position` (m) or its images, which reaches so far (m).
     #[inline]
-    pub(super) fn find(&self, i: usize, position: &[f64; 3], reach: f64, found: &mut Vec<Found>) {
+    pub(super) fn find(&self, i: usize, position: &[f64; 3], reach: f64, found: &mut Vec<Needed>) {
         let range = reach + self.farthest;
         let near = self.mirrors.near(position, range);
         if near != 0 {
@@ -176,19 +176,19 @@ fn note(
     (i, position): (usize, &[f64; 3]),
     (peer, there): (u16, &Extent),
     (near, reach): (u8, f64),
-    found: &mut Vec<Found>,
+    found: &mut Vec<Needed>,
 ) {
     let mut needs = 0;
-    for code in codes(near, peer != MYSELF) {
-        let image = finder.mirrors.reflect_position(position, code);
+    for mirror_mask in mirror_masks(near, peer != MYSELF) {
+        let image = finder.mirrors.reflect_position(position, mirror_mask);
         if there.is_near((&image, &image), reach + there.reach) {
-            needs |= 1 << code;
+            needs |= 1 << mirror_mask;
         }
     }
     if needs != 0 {
         #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
         let particle = i as u32;
-        found.push(Found {
+        found.push(Needed {
             particle,
             needs,
             peer,

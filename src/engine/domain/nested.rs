@@ -96,7 +96,7 @@ impl Slab {
         (1..parts).map(move |part| self.start(part, parts) - 1)
     }
 
-    /// Whether it is cut: it has more ranks than one.
+    /// True if it is cut: it has more ranks than one.
     pub(super) fn is_cut(&self) -> bool {
         self.levels > 0 && self.end - self.first > 1
     }
@@ -194,7 +194,7 @@ impl NestedSlabs {
         self.faces.len() + 1
     }
 
-    /// Whether the faces that cut the same slab ascend.
+    /// True if the faces that cut the same slab ascend.
     #[must_use]
     pub fn is_sorted(&self) -> bool {
         self.are_sorted(self.whole())

@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use super::balance::Balance;
 use super::choice::Choice;
 use super::halo::{Halo, Reaches};
+use super::initial_layout::InitialLayout;
 use super::migrate::Migration;
 use super::nested::NestedSlabs;
-use super::outset::Outset;
 use super::rank_speed::RankSpeeds;
 use comm::{Comm, Traffic};
 use model::Case;
@@ -63,22 +63,22 @@ impl Loss {
 impl Partition {
     /// Slabs with an even number of particles, of which none is created. Collective.
     #[must_use]
-    pub fn new(case: &Case, comm: &Comm, outset: &Outset) -> Self {
+    pub fn new(case: &Case, comm: &Comm, layout: &InitialLayout) -> Self {
         let mut balance = Balance::default();
-        let slabs = outset.slabs(case, comm, (comm.size(), None), &mut balance);
-        Self::with(slabs, balance, case, outset)
+        let slabs = layout.slabs(case, comm, (comm.size(), None), &mut balance);
+        Self::with(slabs, balance, case, layout)
     }
 
     /// All particles on the first rank, until they are [distributed](Self::distribute).
     #[must_use]
-    pub fn none(case: &Case, comm: &Comm, outset: &Outset) -> Self {
-        let levels = outset.known_levels(case, comm.size()).unwrap_or(1);
-        let slabs = NestedSlabs::on_first(outset.axes, levels, comm.size());
-        Self::with(slabs, Balance::default(), case, outset)
+    pub fn none(case: &Case, comm: &Comm, layout: &InitialLayout) -> Self {
+        let levels = layout.known_levels(case, comm.size()).unwrap_or(1);
+        let slabs = NestedSlabs::on_first(layout.axes, levels, comm.size());
+        Self::with(slabs, Balance::default(), case, layout)
     }
 
-    fn with(slabs: NestedSlabs, balance: Balance, case: &Case, outset: &Outset) -> Self {
-        let is_open = outset.known_levels(case, slabs.ranks()).is_none();
+    fn with(slabs: NestedSlabs, balance: Balance, case: &Case, layout: &InitialLayout) -> Self {
+        let is_open = layout.known_levels(case, slabs.ranks()).is_none();
         Self {
             choice: is_open.then(|| Choice::new(case)),
             changes: 0,
@@ -108,13 +108,13 @@ impl Partition {
         }
     }
 
-    /// Whether a step is one of those at regular intervals when slabs are balanced in any case.
+    /// True if a step is one of those at regular intervals when slabs are balanced in any case.
     #[must_use]
     pub fn is_regular(&self, step: u64) -> bool {
         self.every != 0 && step.is_multiple_of(self.every)
     }
 
-    /// Whether slabs are balanced at a step: at regular intervals, and as soon as what was lost since
+    /// True if slabs are balanced at a step: at regular intervals, and as soon as what was lost since
     /// the last balance is worth one.
     #[must_use]
     pub fn is_due(&self, step: u64) -> bool {

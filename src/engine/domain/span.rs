@@ -73,12 +73,12 @@ impl Span {
     }
 
     /// Its image behind planes.
-    pub fn reflected(&self, mirrors: &Mirrors, code: u8) -> Self {
+    pub fn reflected(&self, mirrors: &Mirrors, mirror_mask: u8) -> Self {
         if self.is_empty() {
             return *self;
         }
-        let at = |x: &[f64; 3]| mirrors.reflect_position(x, code);
-        let flying = |v: &[f64; 3]| Mirrors::reflect_vector(v, code);
+        let at = |x: &[f64; 3]| mirrors.reflect_position(x, mirror_mask);
+        let flying = |v: &[f64; 3]| Mirrors::reflect_vector(v, mirror_mask);
         let mut image = Self::NONE;
         image.add(&at(&self.lower), &flying(&self.slowest));
         image.add(&at(&self.upper), &flying(&self.fastest));

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::needs::{Extent, Finder, Found, MYSELF};
+use super::needs::{Extent, Finder, MYSELF, Needed};
 use super::nested::{Decomposition, NestedSlabs};
 use particles::Mirrors;
 
@@ -39,12 +39,12 @@ pub struct Sent {
 const BLOCK: usize = 1024;
 
 /// Bytes of the message in which ranks that are near tell each other where their particles are.
-pub const GREETING: u64 = size_of::<Extent>() as u64;
+pub const EXTENT_MESSAGE: u64 = size_of::<Extent>() as u64;
 
 /// Tells which rank greets which other, if no particle reaches farther than that (m).
-pub fn greetings(slabs: &NestedSlabs, farthest: f64, mut tell: impl FnMut(usize, usize)) {
+pub fn extent_exchange(slabs: &NestedSlabs, farthest: f64, mut emit: impl FnMut(usize, usize)) {
     for from in 0..slabs.ranks() {
-        slabs.near(from, 2.0 * farthest, |to| tell(from, to));
+        slabs.near(from, 2.0 * farthest, |to| emit(from, to));
     }
 }
 
@@ -54,7 +54,7 @@ pub fn tally(
     slabs: &NestedSlabs,
     mirrors: &Mirrors,
     (positions, reach): (&[[f64; 3]], &[f64]),
-    mut tell: impl FnMut(Sent),
+    mut emit: impl FnMut(Sent),
 ) -> Vec<Tally> {
     let dealt = Dealt::new(slabs, positions, reach);
     let boxes = Boxes::new(dealt.extents());
@@ -73,7 +73,7 @@ pub fn tally(
             for (&to, &(particles, images)) in needs.peers.iter().zip(&needs.sent) {
                 tallies[to].halo += particles;
                 tallies[to].images += images;
-                tell(Sent {
+                emit(Sent {
                     from,
                     to,
                     particles,
@@ -208,7 +208,7 @@ impl Needs {
         }
         let theirs: Vec<Extent> = needs.peers.iter().map(|&peer| boxes.of(peer)).collect();
         let finder = Finder::new(mirrors, boxes.of(rank), &theirs);
-        let mut found: Vec<Found> = Vec::new();
+        let mut found: Vec<Needed> = Vec::new();
         for (position, reach) in dealt.particles(rank) {
             found.clear();
             finder.find(0, position, reach, &mut found);

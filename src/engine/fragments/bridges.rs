@@ -5,7 +5,7 @@ use super::grid::Place;
 /// Neighbours beyond which matter is far too dense for a bridge.
 const MOST: usize = 64;
 
-/// Whether the neighbours of a particle fall apart without it: they are not all linked with each
+/// True if the neighbours of a particle fall apart without it: they are not all linked with each
 /// other through links among themselves.
 pub fn is_bridge(neighbours: impl ExactSizeIterator<Item = Place> + Clone) -> bool {
     let count = neighbours.len();

@@ -143,7 +143,7 @@ pub fn distance_squared(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 impl Place {
-    /// Whether two places are linked.
+    /// True if two places are linked.
     #[inline]
     pub fn is_linked(&self, other: &Self) -> bool {
         let range = self.reach + other.reach;

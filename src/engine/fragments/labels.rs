@@ -20,7 +20,7 @@ pub struct Member {
     pub planes: u32,
     /// Its particles on all ranks.
     pub count: u64,
-    /// Whether other ranks have some of it.
+    /// True if other ranks have some of it.
     pub crosses: bool,
 }
 

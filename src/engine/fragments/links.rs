@@ -66,9 +66,9 @@ impl<'a> Links<'a> {
     fn new(matter: &'a Matter, mirrors: &Mirrors, others: &[Image], rule: &Rule) -> Self {
         let own = (0..matter.owned).map(|i| Image::new(i, 0));
         let place = |image: Image| {
-            let i = image.base();
+            let i = image.slot();
             let found = matter.included[i] && matter.size[i] > 0.0;
-            let position = mirrors.reflect_position(&matter.position[i], image.code());
+            let position = mirrors.reflect_position(&matter.position[i], image.mirror_mask());
             (found && position.iter().all(|x| x.is_finite())).then(|| Place {
                 position,
                 reach: link_reach(rule.link, matter.size[i]),
@@ -173,13 +173,13 @@ impl<'a> Links<'a> {
         &self.grids[class].places[number as usize - self.firsts[class]]
     }
 
-    /// Whether a place is a particle of this rank itself.
+    /// True if a place is a particle of this rank itself.
     fn receives(&self, place: &Place) -> bool {
-        place.image.code() == 0 && place.image.base() < self.matter.owned
+        place.image.mirror_mask() == 0 && place.image.slot() < self.matter.owned
     }
 
     fn linked(&self, a: &Place, b: &Place) -> bool {
-        let body = |place: &Place| self.matter.body[place.image.base()];
+        let body = |place: &Place| self.matter.body[place.image.slot()];
         a.is_linked(b) && (self.across_bodies || body(a) == body(b))
     }
 
@@ -211,7 +211,7 @@ impl<'a> Links<'a> {
             self.receivers(|place, neighbours| {
                 let near = neighbours.iter().map(|&k| *self.place(k));
                 let is = u8::from(is_bridge(near));
-                bridges[place.image.base()].store(is, Relaxed);
+                bridges[place.image.slot()].store(is, Relaxed);
             });
         }
         bridges.into_iter().map(AtomicU8::into_inner).collect()
@@ -219,34 +219,34 @@ impl<'a> Links<'a> {
 
     /// Joins linked particles; a bridge is joined with its nearest neighbour that is none, alone.
     fn join(&self, bridges: &[u8], sets: &Sets) {
-        let is_bridge = |place: &Place| bridges[place.image.base()] != 0;
+        let is_bridge = |place: &Place| bridges[place.image.slot()] != 0;
         self.receivers(|place, neighbours| {
-            let own = whole(place.image.base());
+            let own = whole(place.image.slot());
             let near = neighbours.iter().map(|&k| self.place(k));
             let firm = near.clone().filter(|other| !is_bridge(other));
             if is_bridge(place) {
                 let order = |a: &&Place, b: &&Place| {
                     let key = |other: &Place| {
-                        let id = self.matter.ids[other.image.base()];
-                        (other.image.code(), id)
+                        let id = self.matter.ids[other.image.slot()];
+                        (other.image.mirror_mask(), id)
                     };
                     let [x, y] = [a, b].map(|o| distance_squared(&place.position, &o.position));
                     x.total_cmp(&y).then_with(|| key(a).cmp(&key(b)))
                 };
                 if let Some(nearest) = firm.min_by(order) {
-                    sets.join(own, whole(nearest.image.base()));
+                    sets.join(own, whole(nearest.image.slot()));
                 }
                 return;
             }
             for other in firm {
-                let code = other.image.code();
-                sets.join(own, whole(other.image.base()));
-                if code != 0 {
-                    sets.mark(own, code.into());
+                let mirror_mask = other.image.mirror_mask();
+                sets.join(own, whole(other.image.slot()));
+                if mirror_mask != 0 {
+                    sets.mark(own, mirror_mask.into());
                 }
             }
             // A bridge of another rank may be joined with this one, which that rank alone knows.
-            let is_far = |other: &Place| other.image.base() >= self.matter.owned;
+            let is_far = |other: &Place| other.image.slot() >= self.matter.owned;
             if near.clone().any(|other| is_bridge(other) && is_far(other)) {
                 sets.mark(own, TOUCHES);
             }

@@ -9,9 +9,9 @@ use particles::Mirrors;
 pub struct Rule {
     /// Largest distance of linked particles, over the mean of their sizes at the start.
     pub link: f64,
-    /// Whether a single particle joins what hangs together by nothing else.
+    /// True if a single particle joins what hangs together by nothing else.
     pub bridges: bool,
-    /// Whether particles of different bodies are linked.
+    /// True if particles of different bodies are linked.
     pub across_bodies: bool,
     /// Least number of particles of a fragment; the rest is dust.
     pub least: u64,
@@ -48,7 +48,7 @@ pub struct Matter<'a> {
     pub position: &'a [[f64; 3]],
     /// Sizes at the start (m), of halo particles too: zero for what is no matter.
     pub size: &'a [f64],
-    /// Whether each may belong to a fragment.
+    /// True if each may belong to a fragment.
     pub included: &'a [bool],
     /// Masses (kg).
     pub mass: &'a [f64],
@@ -123,13 +123,13 @@ pub fn images(mirrors: &Mirrors, positions: &[[f64; 3]], sizes: &[f64], link: f6
     let all = positions.iter().zip(sizes).enumerate();
     let near = all.flat_map(|(i, (position, &size))| {
         let near = mirrors.near(position, link_reach(link, size) + farthest);
-        let codes = (1..8).filter(move |code| code & !near == 0);
-        codes.map(move |code| Image::new(i, code))
+        let mirror_masks = (1..8).filter(move |mirror_mask| mirror_mask & !near == 0);
+        mirror_masks.map(move |mirror_mask| Image::new(i, mirror_mask))
     });
     near.collect()
 }
 
-/// Whether a particle of a damage belongs to fragments.
+/// True if a particle of a damage belongs to fragments.
 #[must_use]
 pub fn belongs(include: Include, damage: f64) -> bool {
     include == Include::All || damage < 1.0

@@ -63,7 +63,7 @@ impl Sets {
         self.parents.len()
     }
 
-    /// Whether there are no elements.
+    /// True if there are no elements.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.parents.is_empty()

@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 use super::{Loads, Prescribe, Prescribed};
-use crate::loads::Goal;
+use crate::loads::VelocityStage;
 use material::FAILED;
 use model::Case;
 use numerics::exact_sum::ExactSum;
@@ -58,14 +58,14 @@ impl Absorbed {
 
 impl Prescribe for Absorbed {
     #[inline(always)]
-    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
+    fn accelerate(&self, stage: VelocityStage, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
         *total = self.slowed(v, total);
-        self.prescribed.accelerate(goal, v, per_half, total);
+        self.prescribed.accelerate(stage, v, per_half, total);
     }
 
     #[inline(always)]
-    fn set(&self, goal: Goal, v: &mut [f64; 3]) {
-        self.prescribed.set(goal, v);
+    fn set(&self, stage: VelocityStage, v: &mut [f64; 3]) {
+        self.prescribed.set(stage, v);
     }
 
     #[inline(always)]
@@ -108,7 +108,7 @@ impl Absorption {
         }
     }
 
-    /// Whether there are zones.
+    /// True if there are zones.
     pub fn is_any(&self) -> bool {
         !self.zones.is_empty()
     }
@@ -158,7 +158,7 @@ impl Absorption {
 }
 
 impl Loads {
-    /// Whether there are absorbing zones.
+    /// True if there are absorbing zones.
     pub(crate) fn absorb(&self) -> bool {
         self.absorption.is_any()
     }
@@ -214,7 +214,7 @@ impl Loads {
 }
 
 impl Zone {
-    /// Whether it holds a particle of a body with this rate (1/s).
+    /// True if it holds a particle of a body with this rate (1/s).
     #[inline(always)]
     fn holds(&self, rate: f64, body: u32) -> bool {
         rate > 0.0 && body == self.body

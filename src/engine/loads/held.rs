@@ -42,7 +42,7 @@ struct Held<'a> {
     particles: &'a ParticleStore,
     /// Half of the step (s).
     half: f64,
-    /// Whether the half kick is the first.
+    /// True if the half kick is the first.
     first: bool,
 }
 

@@ -21,7 +21,7 @@ use particles::ParticleStore;
 
 /// Which of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Goal {
+pub(crate) enum VelocityStage {
     /// That after the first half kick.
     Middle,
     /// That after the second.
@@ -39,10 +39,10 @@ pub(crate) struct Prescribed {
 }
 
 impl Prescribed {
-    fn velocity(&self, goal: Goal) -> &[f64; 3] {
-        match goal {
-            Goal::Middle => &self.middle,
-            Goal::End => &self.end,
+    fn velocity(&self, stage: VelocityStage) -> &[f64; 3] {
+        match stage {
+            VelocityStage::Middle => &self.middle,
+            VelocityStage::End => &self.end,
         }
     }
 
@@ -59,15 +59,15 @@ impl Prescribed {
 
 /// What moves a particle beside forces.
 pub(crate) trait Prescribe: Copy + Send {
-    /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the goal
+    /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the stage
     /// in a half kick, of which there are `per_half` in a second.
-    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
+    fn accelerate(&self, stage: VelocityStage, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]);
     /// Sets what is prescribed of a velocity (m/s).
-    fn set(&self, goal: Goal, v: &mut [f64; 3]);
+    fn set(&self, stage: VelocityStage, v: &mut [f64; 3]);
     /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
     /// velocity `whole` (m/s) at the whole step that begins or ends it and `middle` between.
     fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]);
-    /// Whether the particle is part of a rigid body.
+    /// True if the particle is part of a rigid body.
     fn is_rigid(&self) -> bool;
 }
 
@@ -77,9 +77,9 @@ pub(crate) struct Free;
 
 impl Prescribe for Free {
     #[inline(always)]
-    fn accelerate(&self, _: Goal, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
+    fn accelerate(&self, _: VelocityStage, _: &[f64; 3], _: f64, _: &mut [f64; 3]) {}
     #[inline(always)]
-    fn set(&self, _: Goal, _: &mut [f64; 3]) {}
+    fn set(&self, _: VelocityStage, _: &mut [f64; 3]) {}
     #[inline(always)]
     fn correct_mean(&self, _: &[f64; 3], _: &[f64; 3], _: &mut [f64; 3]) {}
     #[inline(always)]
@@ -90,19 +90,19 @@ impl Prescribe for Free {
 
 impl Prescribe for Prescribed {
     #[inline(always)]
-    fn accelerate(&self, goal: Goal, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
+    fn accelerate(&self, stage: VelocityStage, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
         for a in 0..3 {
             if self.by[a].is_some() {
-                total[a] = (self.velocity(goal)[a] - v[a]) * per_half;
+                total[a] = (self.velocity(stage)[a] - v[a]) * per_half;
             }
         }
     }
 
     #[inline(always)]
-    fn set(&self, goal: Goal, v: &mut [f64; 3]) {
+    fn set(&self, stage: VelocityStage, v: &mut [f64; 3]) {
         for a in 0..3 {
             if self.by[a].is_some() {
-                v[a] = self.velocity(goal)[a];
+                v[a] = self.velocity(stage)[a];
             }
         }
     }
@@ -176,17 +176,17 @@ impl Loads {
         if dt > 0.0 { 2.0 / dt } else { 0.0 }
     }
 
-    /// Whether there is gravity or an absorbing zone, or velocities of any particle are prescribed.
+    /// True if there is gravity or an absorbing zone, or velocities of any particle are prescribed.
     pub(crate) fn act(&self) -> bool {
         self.has_motions() || self.absorb() || self.gravity != [0.0; 3]
     }
 
-    /// Whether velocities of any particle are prescribed.
+    /// True if velocities of any particle are prescribed.
     pub(crate) fn has_motions(&self) -> bool {
         !self.motions.is_empty()
     }
 
-    /// Whether bits name loads and rigid bodies of the case and no others.
+    /// True if bits name loads and rigid bodies of the case and no others.
     pub(crate) fn knows(&self, bits: u32) -> bool {
         u64::from(bits) >> self.motions.len() == 0
     }
@@ -196,7 +196,7 @@ impl Loads {
         self.sums.len()
     }
 
-    /// Whether a particle with these bits is part of a rigid body.
+    /// True if a particle with these bits is part of a rigid body.
     #[inline]
     pub(crate) fn is_rigid(&self, bits: u32) -> bool {
         bits & self.rigid_bits != 0

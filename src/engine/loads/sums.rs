@@ -60,7 +60,7 @@ impl Loads {
         )
     }
 
-    /// Whether a particle is no part of a rigid body.
+    /// True if a particle is no part of a rigid body.
     fn is_free(&self, particles: &ParticleStore, i: usize) -> bool {
         !self.has_motions() || !self.is_rigid(particles.load[i])
     }

@@ -105,7 +105,7 @@ impl Attached {
         &self.runs[self.columns[column]..self.columns[column + 1]]
     }
 
-    /// Whether it holds a voxel.
+    /// True if it holds a voxel.
     #[must_use]
     pub fn holds(&self, [i, j, k]: [usize; 3]) -> bool {
         let column = self.column(i * self.window.counts[1] + j);
@@ -114,7 +114,7 @@ impl Attached {
             .any(|run| (run.begin as usize..run.end as usize).contains(&k))
     }
 
-    /// Whether it holds a voxel or one that touches it.
+    /// True if it holds a voxel or one that touches it.
     #[must_use]
     pub fn holds_near(&self, voxel: [usize; 3]) -> bool {
         let around = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
@@ -150,7 +150,7 @@ impl Attached {
         self.mask(|runs| runs.iter().any(&within))
     }
 
-    /// Whether a run has voxels whose middles lie between two heights (m); at least that which holds the middle of
+    /// True if a run has voxels whose middles lie between two heights (m); at least that which holds the middle of
     /// both.
     fn between(&self, low: f64, high: f64) -> impl Fn(&Run) -> bool {
         let place = |height: f64| (height - self.window.lower[2]) / self.window.edge;
@@ -162,7 +162,7 @@ impl Attached {
         move |run| f64::from(run.begin) <= last && f64::from(run.end) > first
     }
 
-    /// Whether what it leaves open leads from above it to below it, elsewhere than around its rim.
+    /// True if what it leaves open leads from above it to below it, elsewhere than around its rim.
     #[must_use]
     pub fn is_open(&self) -> bool {
         let depth = u32::try_from(self.window.depth()).unwrap_or(u32::MAX);
@@ -186,7 +186,7 @@ impl Attached {
         sides.contains(&[true; 2])
     }
 
-    /// Whether a voxel lies below all of it in its column, or beside it in an open one.
+    /// True if a voxel lies below all of it in its column, or beside it in an open one.
     #[must_use]
     pub fn is_below(&self, [i, j, k]: [usize; 3]) -> bool {
         let column = self.column(i * self.window.counts[1] + j);
@@ -199,7 +199,7 @@ impl Attached {
         self.mask(|runs| runs.windows(2).any(|pair| pair[1].begin >= pair[0].end + 2))
     }
 
-    /// Whether a column has held the body at the start.
+    /// True if a column has held the body at the start.
     #[must_use]
     pub fn is_of_body(&self, column: usize) -> bool {
         !self.outside[column]

@@ -69,7 +69,7 @@ fn diameters(
     (thickness, counts.iter().map(diameter).collect())
 }
 
-/// What there is to tell of a bar. Collective.
+/// The measures of a bar. Collective.
 pub fn bar(bar: &Bar, matter: &Matter, comm: &Comm) -> Findings {
     let frame = Frame::new(&bar.foot);
     let [high, low] = matter.largest::<2>(comm, |i, most| {

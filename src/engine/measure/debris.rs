@@ -83,7 +83,7 @@ const NONE: [(&str, &str); 16] = [
     ("outline_ratio", ""),
 ];
 
-/// What there is to tell of debris; `of` is the plate or target that it left, with the momentum
+/// The measures of debris; `of` is the plate or target that it left, with the momentum
 /// (kg m/s) of what struck its face where this debris leaves that face. Collective.
 pub fn debris(
     debris: &Debris,

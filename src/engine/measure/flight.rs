@@ -60,7 +60,7 @@ pub struct View<'a> {
     /// Which particles are debris.
     pub is_debris: Vec<bool>,
     /// Codes of the images behind symmetry planes that the flight does not run along, and of the particle itself.
-    codes: Vec<u8>,
+    mirror_masks: Vec<u8>,
     /// How many images fly as each of them does, itself with them.
     alike: u32,
 }
@@ -101,15 +101,19 @@ impl<'a> View<'a> {
     pub fn new(debris: &'a Debris, of: Option<(&Slab, &Remains)>, matter: &'a Matter<'a>) -> Self {
         let along = |a: &usize| debris.direction[*a] == 0.0;
         let bits = (0..3).filter(along).fold(0, |bits, a| bits | 1_u8 << a);
-        let images = || std::iter::once(0).chain(matter.mirrors.codes());
-        let alike = images().filter(|code| code & !bits == 0).count();
+        let images = || std::iter::once(0).chain(matter.mirrors.masks());
+        let alike = images()
+            .filter(|mirror_mask| mirror_mask & !bits == 0)
+            .count();
         Self {
             debris,
             matter,
             frame: Frame::new(&debris.direction),
             axis: [0.0; 2],
             is_debris: is_debris(debris, of, matter),
-            codes: images().filter(|code| code & bits == 0).collect(),
+            mirror_masks: images()
+                .filter(|mirror_mask| mirror_mask & bits == 0)
+                .collect(),
             alike: u32::try_from(alike).unwrap_or(1),
         }
     }
@@ -125,9 +129,9 @@ impl<'a> View<'a> {
         let base = dot(&self.debris.direction, &self.debris.point);
         let (x, v) = (&self.matter.position[i], &self.matter.velocity[i]);
         let mirrors = &self.matter.mirrors;
-        self.codes.iter().map(move |&code| {
-            let place = self.frame.turned(&mirrors.reflect_position(x, code));
-            let way = self.frame.turned(&Mirrors::reflect_vector(v, code));
+        self.mirror_masks.iter().map(move |&mirror_mask| {
+            let place = self.frame.turned(&mirrors.reflect_position(x, mirror_mask));
+            let way = self.frame.turned(&Mirrors::reflect_vector(v, mirror_mask));
             let across = [place[0] - self.axis[0], place[1] - self.axis[1]];
             let radius = (across[0] * across[0] + across[1] * across[1]).sqrt();
             let sideways = across[0] * way[0] + across[1] * way[1];

@@ -28,7 +28,7 @@ impl Footprint {
         }
     }
 
-    /// Whether a place of two coordinates (m) across the normal is within it.
+    /// True if a place of two coordinates (m) across the normal is within it.
     pub fn holds(&self, [u, w]: [f64; 2]) -> bool {
         let x = self.frame.back(&[u, w, self.height]);
         let beyond = self.mirrors.beyond(&x);
@@ -36,7 +36,7 @@ impl Footprint {
         self.solid.distance(&kept.into()) <= -self.margin
     }
 
-    /// Whether the straight way on which a particle at a place (m) flies at a velocity (m/s) has led through it, if
+    /// True if the straight way on which a particle at a place (m) flies at a velocity (m/s) has led through it, if
     /// the particle flies away to the rear; else whether it is behind it.
     pub fn let_through(&self, place: &[f64; 3], velocity: &[f64; 3]) -> bool {
         let [u, w, height] = self.frame.turned(place);

@@ -22,7 +22,7 @@ struct Line {
     piece: f64,
     /// Largest pressures (Pa); −∞ where there is no matter.
     pressures: Vec<f64>,
-    /// Whether any of them is beyond the arrival of a shock in its matter.
+    /// True if any of them is beyond the arrival of a shock in its matter.
     arrived: bool,
 }
 
@@ -108,7 +108,7 @@ impl Line {
     }
 }
 
-/// What there is to tell of a front at a time (s). `before` is the time and the position that were told
+/// The measures of a front at a time (s). `before` is the time and the position that were told
 /// last, and becomes these. Collective.
 pub fn front(
     line: &FrontLine,

@@ -49,9 +49,9 @@ pub struct Reader {
     pub readings: Vec<(Reading, usize)>,
     /// Place in the store of the particle that carries it, as far as this rank knows.
     pub place: Option<usize>,
-    /// Whether it reads now.
+    /// True if it reads now.
     pub due: bool,
-    /// Whether a particle of this rank is near.
+    /// True if a particle of this rank is near.
     pub met: bool,
     /// Coverage, position, then its readings and the normal stress, each times its weight.
     pub sums: Vec<f64>,
@@ -106,7 +106,7 @@ impl Reader {
         if let (Some(normal), [sum, ..]) = (&self.gauge.along, rest) {
             let mut lanes = LaneSum::default();
             for (k, one) in near.iter().enumerate() {
-                let stress = stress(particles, one.i, one.code);
+                let stress = stress(particles, one.i, one.mirror_mask);
                 lanes.add(k, one.weight * along(&stress, normal));
             }
             *sum = lanes.total();
@@ -124,12 +124,12 @@ impl Reader {
             terms.extend([0.0; FIRST - 1]);
         }
         for (reading, _) in &self.readings {
-            let values = reading.read(matter.case, particles, one.i, one.code);
+            let values = reading.read(matter.case, particles, one.i, one.mirror_mask);
             let own = &values[..reading.endings().len()];
             terms.extend(own.iter().map(|value| one.weight * value));
         }
         if let Some(normal) = &self.gauge.along {
-            let stress = stress(particles, one.i, one.code);
+            let stress = stress(particles, one.i, one.mirror_mask);
             terms.push(one.weight * along(&stress, normal));
         }
     }
@@ -161,22 +161,22 @@ impl Reader {
         search.begin();
         let images = lists.images();
         let weights = Weights::<V>::new(&means.kernel, matter.particles);
-        for code in std::iter::once(0).chain(means.mirrors.codes()) {
-            let at = means.mirrors.reflect_position(&self.gauge.at, code);
+        for mirror_mask in std::iter::once(0).chain(means.mirrors.masks()) {
+            let at = means.mirrors.reflect_position(&self.gauge.at, mirror_mask);
             for group in 0..lists.groups.count() {
                 let begin = search.found().len();
                 search.own(lists, group, &at);
                 if self.gauge.body.is_some() || lists.groups.rigid[group] {
-                    let body = |place: u32| matter.particles.body[images[place as usize].base()];
+                    let body = |place: u32| matter.particles.body[images[place as usize].slot()];
                     search.keep(begin, |place| {
                         reads(matter.case, self.gauge.body, body(place))
                     });
                 }
-                near.part(search.found().len(), code, group);
+                near.part(search.found().len(), mirror_mask, group);
             }
         }
         #[expect(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        let particle = |place: u32| images[place as usize].base() as u32;
+        let particle = |place: u32| images[place as usize].slot() as u32;
         near.set(search.found(), particle);
         for eight in 0..near.eights() {
             let square = V::read(search.squares(eight * LANES));
@@ -285,7 +285,7 @@ impl<'a, V: Lanes> Weights<'a, V> {
     }
 }
 
-/// Whether a gauge for a body, or for all that deform, reads particles of a body.
+/// True if a gauge for a body, or for all that deform, reads particles of a body.
 pub fn reads(case: &Case, wanted: Option<usize>, body: u32) -> bool {
     let body = body as usize;
     wanted.map_or_else(

@@ -17,7 +17,7 @@ pub struct Shares {
     all: Vec<u64>,
 }
 
-/// Words that a term is ordered by: image code and group, column, place along it, id.
+/// Words that a term is ordered by: image mirror mask and group, column, place along it, id.
 const KEY: usize = 4;
 
 impl Shares {
@@ -43,13 +43,13 @@ impl Shares {
         let mut words = &self.words[..];
         let mut shared = Vec::new();
         for (k, reader) in readers.iter_mut().enumerate().filter(|(_, r)| r.due) {
-            let (told, rest) = words.split_at(1 + reader.sums.len());
+            let (known, rest) = words.split_at(1 + reader.sums.len());
             words = rest;
-            if told[0] > 1 {
+            if known[0] > 1 {
                 shared.push(k);
                 continue;
             }
-            for (sum, &bits) in reader.sums.iter_mut().zip(&told[1..]) {
+            for (sum, &bits) in reader.sums.iter_mut().zip(&known[1..]) {
                 *sum = f64::from_bits(bits);
             }
         }
@@ -104,8 +104,8 @@ impl Shares {
         comm.sum_u64(&mut self.words);
         let mut words = &self.words[..];
         for (&k, &length) in shared.iter().zip(&rows) {
-            let (told, rest) = words.split_at(length);
-            add_in_order(told, &mut readers[k].sums);
+            let (known, rest) = words.split_at(length);
+            add_in_order(known, &mut readers[k].sums);
             words = rest;
         }
     }
@@ -115,7 +115,7 @@ impl Shares {
 fn key(matter: &Matter, one: &One) -> [u64; KEY] {
     let [group, index] = one.listed;
     let [column, along] = matter.lists.sequence().rank_in_order(group, index);
-    let first = u64::from(one.code) << 32 | group as u64;
+    let first = u64::from(one.mirror_mask) << 32 | group as u64;
     [first, column, along, matter.particles.id[one.i]]
 }
 

@@ -92,7 +92,7 @@ impl Gauges {
         readings.chain(along)
     }
 
-    /// Whether there are any.
+    /// True if there are any.
     #[must_use]
     pub fn any(&self) -> bool {
         !self.readers.is_empty()
@@ -280,8 +280,8 @@ fn nearest(gauge: &Gauge, case: &Case, particles: &ParticleStore, lists: &Lists)
     for _ in 0..DOUBLINGS {
         lists.near_point(&gauge.at, range, |index, square| {
             let image = lists.images()[index];
-            let i = image.base();
-            let own = image.code() == 0 && i < particles.owned();
+            let i = image.slot();
+            let own = image.mirror_mask() == 0 && i < particles.owned();
             if own && reads(case, gauge.body, particles.body[i]) {
                 best = best.min([square.to_bits(), particles.id[i]]);
             }

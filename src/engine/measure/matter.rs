@@ -65,7 +65,7 @@ impl<'a> Matter<'a> {
         self.body.len()
     }
 
-    /// Whether there are none.
+    /// True if there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.body.is_empty()
@@ -90,7 +90,7 @@ impl<'a> Matter<'a> {
         edge(self.volume(i), self.case.dimension)
     }
 
-    /// Whether a particle has failed.
+    /// True if a particle has failed.
     #[must_use]
     pub fn has_failed(&self, i: usize) -> bool {
         self.damage.get(i).is_some_and(|&damage| damage >= FAILED)
@@ -99,24 +99,24 @@ impl<'a> Matter<'a> {
     /// A particle's positions (m) and velocities (m/s), those of its images with them.
     pub fn images(&self, i: usize) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
         let (x, v) = (&self.position[i], &self.velocity[i]);
-        let codes = std::iter::once(0).chain(self.mirrors.codes());
-        codes.map(move |code| {
+        let mirror_masks = std::iter::once(0).chain(self.mirrors.masks());
+        mirror_masks.map(move |mirror_mask| {
             (
-                self.mirrors.reflect_position(x, code),
-                Mirrors::reflect_vector(v, code),
+                self.mirrors.reflect_position(x, mirror_mask),
+                Mirrors::reflect_vector(v, mirror_mask),
             )
         })
     }
 
-    /// Sums over the particles of all ranks: `tell` adds terms of one. Collective.
+    /// Sums over the particles of all ranks: `terms` adds terms of one. Collective.
     pub fn sums<const N: usize>(
         &self,
         comm: &Comm,
-        tell: impl Fn(usize, &mut GatheredSums<N>) + Sync,
+        terms: impl Fn(usize, &mut GatheredSums<N>) + Sync,
     ) -> [f64; N] {
         let of_chunk = |mut sums: GatheredSums<N>, chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(self.len()) {
-                tell(i, &mut sums);
+                terms(i, &mut sums);
             }
             sums
         };
@@ -133,17 +133,17 @@ impl<'a> Matter<'a> {
         sums.map(|sum| sum.value())
     }
 
-    /// Largest values over the particles of all ranks: `tell` raises them by one; −∞ where there is
+    /// Largest values over the particles of all ranks: `terms` raises them by one; −∞ where there is
     /// none. Collective.
     pub fn largest<const N: usize>(
         &self,
         comm: &Comm,
-        tell: impl Fn(usize, &mut [f64; N]) + Sync,
+        terms: impl Fn(usize, &mut [f64; N]) + Sync,
     ) -> [f64; N] {
         let none = || [f64::NEG_INFINITY; N];
         let of_chunk = |mut most: [f64; N], chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(self.len()) {
-                tell(i, &mut most);
+                terms(i, &mut most);
             }
             most
         };
@@ -159,18 +159,18 @@ impl<'a> Matter<'a> {
         words.map(disordered)
     }
 
-    /// Counts by bin over the particles of all ranks: `tell` adds to bins. Collective.
+    /// Counts by bin over the particles of all ranks: `terms` adds to bins. Collective.
     #[must_use]
     pub fn counts(
         &self,
         comm: &Comm,
         bins: usize,
-        tell: impl Fn(usize, &mut [i64]) + Sync,
+        terms: impl Fn(usize, &mut [i64]) + Sync,
     ) -> Vec<i64> {
         let none = || vec![0; bins];
         let of_chunk = |mut counts: Vec<i64>, chunk: usize| {
             for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(self.len()) {
-                tell(i, &mut counts);
+                terms(i, &mut counts);
             }
             counts
         };

@@ -19,7 +19,7 @@ pub struct Near {
 #[derive(Debug, Clone, Copy)]
 struct Part {
     end: usize,
-    code: u8,
+    mirror_mask: u8,
     group: usize,
 }
 
@@ -27,7 +27,7 @@ struct Part {
 #[derive(Debug, Clone, Copy)]
 pub struct One {
     pub i: usize,
-    pub code: u8,
+    pub mirror_mask: u8,
     pub weight: f64,
     /// Where it stands in the lists: group and place.
     pub listed: [usize; 2],
@@ -57,9 +57,13 @@ impl Near {
         self.places.clear();
     }
 
-    /// Ends the images of a code and group.
-    pub fn part(&mut self, end: usize, code: u8, group: usize) {
-        self.parts.push(Part { end, code, group });
+    /// Ends the images of a mirror mask and group.
+    pub fn part(&mut self, end: usize, mirror_mask: u8, group: usize) {
+        self.parts.push(Part {
+            end,
+            mirror_mask,
+            group,
+        });
     }
 
     /// A particle alone, of the weight one.
@@ -111,7 +115,7 @@ impl Near {
         self.weights[self.count..].fill(0.0);
     }
 
-    /// Whether any of them stands behind symmetry planes.
+    /// True if any of them stands behind symmetry planes.
     #[inline(always)]
     #[must_use]
     pub fn any_behind(&self) -> bool {
@@ -119,7 +123,7 @@ impl Near {
         self.parts.iter().any(|part| {
             let is_empty = part.end == begin;
             begin = part.end;
-            part.code != 0 && !is_empty
+            part.mirror_mask != 0 && !is_empty
         })
     }
 
@@ -131,10 +135,10 @@ impl Near {
             while part.is_some_and(|part| part.end <= k) {
                 part = parts.next();
             }
-            let (code, group) = part.map_or((0, 0), |part| (part.code, part.group));
+            let (mirror_mask, group) = part.map_or((0, 0), |part| (part.mirror_mask, part.group));
             One {
                 i: self.particles[k] as usize,
-                code,
+                mirror_mask,
                 weight: self.weights[k],
                 listed: [group, self.places[k] as usize],
             }
@@ -220,7 +224,7 @@ mod tests {
             let mut lanes = [LaneSum::default(); 2];
             for (k, one) in near.iter().enumerate() {
                 assert_eq!((one.i, one.listed[1]), (50 - k, k));
-                assert_eq!(one.code, if k < 2 { 0 } else { 3 });
+                assert_eq!(one.mirror_mask, if k < 2 { 0 } else { 3 });
                 lanes[0].add(k, one.weight);
                 lanes[1].add(k, one.weight * value(one.i));
             }

@@ -258,7 +258,7 @@ impl Shape {
     }
 }
 
-/// What there is to tell of a plate. Collective.
+/// The measures of a plate. Collective.
 pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Findings {
     let shape = match remains.attached() {
         Some(attached) => Shape::of(slab, attached),

@@ -79,9 +79,15 @@ impl Reading {
         }
     }
 
-    /// The numbers of owned particle `i` as its image of a code has them, at the front.
+    /// The numbers of owned particle `i` as its image of a mirror mask has them, at the front.
     #[must_use]
-    pub fn read(self, case: &Case, particles: &ParticleStore, i: usize, code: u8) -> [f64; MOST] {
+    pub fn read(
+        self,
+        case: &Case,
+        particles: &ParticleStore,
+        i: usize,
+        mirror_mask: u8,
+    ) -> [f64; MOST] {
         let mut all = [0.0; MOST];
         match self {
             Self::Field(field) => {
@@ -91,9 +97,9 @@ impl Reading {
                 if let Some(own) = values.get(i * size..(i + 1) * size) {
                     all[..size].copy_from_slice(own);
                 }
-                reflect(field.mirror, &mut all, code);
+                reflect(field.mirror, &mut all, mirror_mask);
             }
-            Self::Stress => all[..6].copy_from_slice(&stress(particles, i, code)),
+            Self::Stress => all[..6].copy_from_slice(&stress(particles, i, mirror_mask)),
             Self::VonMises => all[0] = von_mises(&particles.deviatoric_stress[i]),
             Self::Temperature => all[0] = temperature(case, particles, i).unwrap_or(f64::NAN),
         }
@@ -134,7 +140,7 @@ impl Reading {
             (_, sums) => {
                 let mut lanes = [LaneSum::default(); MOST];
                 for (k, one) in near.iter().enumerate() {
-                    let values = self.read(case, particles, one.i, one.code);
+                    let values = self.read(case, particles, one.i, one.mirror_mask);
                     for (lanes, value) in lanes.iter_mut().zip(values) {
                         lanes.add(k, one.weight * value);
                     }
@@ -153,7 +159,7 @@ fn sums_of_images(rule: Mirror, values: &[[f64; 3]], near: &Near) -> [f64; 3] {
     for (k, one) in near.iter().enumerate() {
         let own = &values[one.i];
         let image = match rule {
-            Mirror::Vector => Mirrors::reflect_vector(own, one.code),
+            Mirror::Vector => Mirrors::reflect_vector(own, one.mirror_mask),
             _ => *own,
         };
         for (lanes, value) in lanes.iter_mut().zip(image) {
@@ -164,25 +170,25 @@ fn sums_of_images(rule: Mirror, values: &[[f64; 3]], near: &Near) -> [f64; 3] {
 }
 
 /// The image of a field's numbers.
-fn reflect(rule: Mirror, all: &mut [f64; MOST], code: u8) {
+fn reflect(rule: Mirror, all: &mut [f64; MOST], mirror_mask: u8) {
     match rule {
         Mirror::Same | Mirror::Place => {}
         Mirror::Vector => {
-            let vector = Mirrors::reflect_vector(&[all[0], all[1], all[2]], code);
+            let vector = Mirrors::reflect_vector(&[all[0], all[1], all[2]], mirror_mask);
             all[..3].copy_from_slice(&vector);
         }
         Mirror::Symmetric => {
             let tensor = std::array::from_fn(|c| all[c]);
-            all[..6].copy_from_slice(&Mirrors::reflect_symmetric(&tensor, code));
+            all[..6].copy_from_slice(&Mirrors::reflect_symmetric(&tensor, mirror_mask));
         }
-        Mirror::Tensor => *all = Mirrors::reflect_tensor(all, code),
+        Mirror::Tensor => *all = Mirrors::reflect_tensor(all, mirror_mask),
     }
 }
 
 /// The stress (Pa, tension positive) `s − p I` of an owned particle's image.
 #[must_use]
-pub fn stress(particles: &ParticleStore, i: usize, code: u8) -> [f64; 6] {
-    let mut stress = Mirrors::reflect_symmetric(&particles.deviatoric_stress[i], code);
+pub fn stress(particles: &ParticleStore, i: usize, mirror_mask: u8) -> [f64; 6] {
+    let mut stress = Mirrors::reflect_symmetric(&particles.deviatoric_stress[i], mirror_mask);
     for normal in &mut stress[..3] {
         *normal -= particles.pressure[i];
     }
@@ -235,18 +241,20 @@ pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &
             lanes(&particles.plastic_energy),
             lanes(&particles.damage),
         ];
-        let told = match last {
-            Some((known, its, told)) if known == material(first) && its == state => told,
+        let temperatures = match last {
+            Some((known, its, temperatures)) if known == material(first) && its == state => {
+                temperatures
+            }
             _ => {
                 let material = &case.materials[material(first)];
                 let [density, energy, work, damage] = &state;
                 let energy = material.thermal_energies(energy, work);
-                let told = material.temperatures(density, &energy, damage);
-                told.unwrap_or([f64::NEG_INFINITY; LANES])
+                let temperatures = material.temperatures(density, &energy, damage);
+                temperatures.unwrap_or([f64::NEG_INFINITY; LANES])
             }
         };
-        all.copy_from_slice(&told);
-        last = Some((material(first), state, told));
+        all.copy_from_slice(&temperatures);
+        last = Some((material(first), state, temperatures));
     }
 }
 

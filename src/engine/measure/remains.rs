@@ -25,7 +25,7 @@ const MARGIN: (f64, f64) = (4.0, 0.1);
 /// thicknesses and [`MARGIN`].
 const LIPS: f64 = 8.0;
 
-/// Whether a place belongs to what remains.
+/// True if a place belongs to what remains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Belongs {
     /// It lies in it.
@@ -67,11 +67,11 @@ impl Remains {
         if reach[0].is_finite() {
             let (window, beyond) = window(slab, &halves, &reach);
             let voxels = Voxels::new(window);
-            voxels.fill(matter.len(), &halves.codes, |i, code| {
+            voxels.fill(matter.len(), &halves.mirror_masks, |i, mirror_mask| {
                 let counts = matter.body_of(i) == slab.body
                     && (slab.include == Include::All || !matter.has_failed(i));
                 counts.then(|| Grain {
-                    place: place(&frame, matter, i, code),
+                    place: place(&frame, matter, i, mirror_mask),
                     volume: matter.volume(i),
                 })
             });
@@ -114,7 +114,7 @@ impl Remains {
         self.frame.turned(x)[2]
     }
 
-    /// Whether a place (m) that lies behind the body lies below what remains of it, too.
+    /// True if a place (m) that lies behind the body lies below what remains of it, too.
     #[must_use]
     pub fn is_behind(&self, x: &[f64; 3]) -> bool {
         let place = self.frame.turned(x);
@@ -123,13 +123,13 @@ impl Remains {
         voxel.is_none_or(|(attached, voxel)| attached.is_below(voxel))
     }
 
-    /// Whether a particle belongs to it.
+    /// True if a particle belongs to it.
     #[must_use]
     pub fn holds(&self, i: usize) -> Belongs {
         self.belongs[i]
     }
 
-    /// Whether a particle of the body at a place (m) belongs to it.
+    /// True if a particle of the body at a place (m) belongs to it.
     fn place(&self, x: &[f64; 3]) -> Belongs {
         let Some(attached) = &self.attached else {
             return Belongs::Yes;
@@ -167,23 +167,29 @@ struct Halves {
     /// Where they are on the first two axes (m).
     planes: [Option<f64>; 2],
     /// Codes of images behind other planes, and of the particle itself.
-    codes: Vec<u8>,
+    mirror_masks: Vec<u8>,
 }
 
 impl Halves {
     fn new(frame: &Frame, mirrors: &Mirrors) -> Self {
         let (planes, bits) = frame.planes(mirrors);
-        let codes = std::iter::once(0).chain(mirrors.codes());
+        let mirror_masks = std::iter::once(0).chain(mirrors.masks());
         Self {
             planes,
-            codes: codes.filter(|code| code & bits == 0).collect(),
+            mirror_masks: mirror_masks
+                .filter(|mirror_mask| mirror_mask & bits == 0)
+                .collect(),
         }
     }
 }
 
 /// Coordinates (m) of a particle's image.
-fn place(frame: &Frame, matter: &Matter, i: usize, code: u8) -> [f64; 3] {
-    frame.turned(&matter.mirrors.reflect_position(&matter.position[i], code))
+fn place(frame: &Frame, matter: &Matter, i: usize, mirror_mask: u8) -> [f64; 3] {
+    frame.turned(
+        &matter
+            .mirrors
+            .reflect_position(&matter.position[i], mirror_mask),
+    )
 }
 
 /// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
@@ -197,8 +203,8 @@ fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &C
         if matter.body_of(i) != slab.body || !flowed {
             return;
         }
-        for &code in &halves.codes {
-            let place = place(frame, matter, i, code);
+        for &mirror_mask in &halves.mirror_masks {
+            let place = place(frame, matter, i, mirror_mask);
             if low <= place[2] && place[2] <= high {
                 for a in 0..3 {
                     raise(&mut most[a], place[a]);

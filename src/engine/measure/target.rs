@@ -115,7 +115,7 @@ fn uncertain_volume(crater: &Crater, edge: f64) -> f64 {
     0.5 * edge * bowl
 }
 
-/// What there is to tell of a target. Collective.
+/// The measures of a target. Collective.
 pub fn target(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Findings {
     let (crater, edge) = match remains.attached() {
         Some(attached) => (Crater::of(slab, attached), attached.window.edge),

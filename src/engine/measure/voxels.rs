@@ -144,7 +144,7 @@ pub struct Voxels {
     /// Words of a column.
     deep: usize,
     words: Vec<AtomicU64>,
-    /// Whether one thread alone fills them.
+    /// True if one thread alone fills them.
     alone: bool,
 }
 
@@ -152,8 +152,8 @@ pub struct Voxels {
 struct Fill<'a, F> {
     voxels: &'a Voxels,
     particles: std::ops::Range<usize>,
-    codes: &'a [u8],
-    tell: &'a F,
+    mirror_masks: &'a [u8],
+    grain: &'a F,
 }
 
 impl<F: Fn(usize, u8) -> Option<Grain>> Vectorised for Fill<'_, F> {
@@ -162,8 +162,8 @@ impl<F: Fn(usize, u8) -> Option<Grain>> Vectorised for Fill<'_, F> {
     #[inline(always)]
     fn run<V: Lanes>(self) {
         for i in self.particles {
-            for &code in self.codes {
-                if let Some(grain) = (self.tell)(i, code) {
+            for &mirror_mask in self.mirror_masks {
+                if let Some(grain) = (self.grain)(i, mirror_mask) {
                     self.voxels.add::<V>(&grain);
                 }
             }
@@ -187,13 +187,13 @@ impl Voxels {
         }
     }
 
-    /// Spreads all matter of this rank: `tell` gives what there is of particle `i` of `0..count` behind planes of a
-    /// code.
+    /// Spreads all matter of this rank: `grain` gives what there is of particle `i` of `0..count` behind planes of a
+    /// mirror mask.
     pub fn fill(
         &self,
         count: usize,
-        codes: &[u8],
-        tell: impl Fn(usize, u8) -> Option<Grain> + Sync,
+        mirror_masks: &[u8],
+        grain: impl Fn(usize, u8) -> Option<Grain> + Sync,
     ) {
         let chunks = (0..count.div_ceil(GRAIN)).into_par_iter();
         // same bits in any order: whole numbers
@@ -201,8 +201,8 @@ impl Voxels {
             instructions().run(Fill {
                 voxels: self,
                 particles: chunk * GRAIN..((chunk + 1) * GRAIN).min(count),
-                codes,
-                tell: &tell,
+                mirror_masks,
+                grain: &grain,
             });
         });
     }

@@ -19,7 +19,7 @@ impl<'a> Whole<'a> {
     /// The part and all its images: 1, 2, 4 or 8.
     #[must_use]
     pub fn copies(&self) -> u32 {
-        1 + u32::try_from(self.mirrors.codes().count()).unwrap_or(0)
+        1 + u32::try_from(self.mirrors.masks().count()).unwrap_or(0)
     }
 
     /// A sum such as a mass or an energy.
@@ -51,8 +51,8 @@ impl<'a> Whole<'a> {
     #[must_use]
     pub fn angular_momentum(&self, part: [f64; 3], momentum: [f64; 3]) -> [f64; 3] {
         let mut all = part;
-        for code in self.mirrors.codes() {
-            let sign = |a: usize| if code >> a & 1 == 1 { -1.0 } else { 1.0 };
+        for mirror_mask in self.mirrors.masks() {
+            let sign = |a: usize| if mirror_mask >> a & 1 == 1 { -1.0 } else { 1.0 };
             let shift = std::array::from_fn(|a| match self.mirrors.plane(a) {
                 Some(plane) if sign(a) < 0.0 => 2.0 * plane,
                 _ => 0.0,
@@ -124,12 +124,12 @@ mod tests {
             let (mut momentum, mut turn, mut centre) = ([0.0; 3], [0.0; 3], [0.0; 3]);
             let (mut part_momentum, mut part_turn) = ([0.0; 3], [0.0; 3]);
             let (mut extents, mut part_extents) = ([[9e9; 3], [-9e9; 3]], [[9e9; 3], [-9e9; 3]]);
-            for code in std::iter::once(0).chain(mirrors.codes()) {
+            for mirror_mask in std::iter::once(0).chain(mirrors.masks()) {
                 copies += 1;
                 for (m, x, v) in parts {
                     let (y, w) = (
-                        mirrors.reflect_position(&x, code),
-                        Mirrors::reflect_vector(&v, code),
+                        mirrors.reflect_position(&x, mirror_mask),
+                        Mirrors::reflect_vector(&v, mirror_mask),
                     );
                     let spin = cross(&y, &w);
                     mass += m;
@@ -140,7 +140,7 @@ mod tests {
                         extents[0][a] = f64::min(extents[0][a], y[a]);
                         extents[1][a] = f64::max(extents[1][a], y[a]);
                     }
-                    if code == 0 {
+                    if mirror_mask == 0 {
                         for a in 0..3 {
                             part_momentum[a] += m * w[a];
                             part_turn[a] += m * spin[a];

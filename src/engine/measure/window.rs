@@ -15,7 +15,7 @@ pub struct Window {
     pub edge: f64,
     /// Number of voxels along each axis.
     pub counts: [usize; 3],
-    /// Whether its halves along the first two are images of each other.
+    /// True if its halves along the first two are images of each other.
     pub halved: [bool; 2],
 }
 

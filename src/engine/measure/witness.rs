@@ -27,7 +27,7 @@ pub struct Crossing {
     pub id: u64,
     /// Index of its body.
     pub body: usize,
-    /// Whether it went along the normal.
+    /// True if it went along the normal.
     pub forwards: bool,
     /// When (s).
     pub time: f64,
@@ -98,7 +98,7 @@ impl Witnesses {
         }
     }
 
-    /// Whether there are any planes.
+    /// True if there are any planes.
     #[must_use]
     pub fn any(&self) -> bool {
         !self.planes.is_empty()

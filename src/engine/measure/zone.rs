@@ -47,7 +47,7 @@ impl Part {
     }
 }
 
-/// Whether a region reads particle `i` where its image stands (m).
+/// True if a region reads particle `i` where its image stands (m).
 fn reads(zone: &Zone, matter: &Matter, particles: &ParticleStore, i: usize, x: &[f64; 3]) -> bool {
     let body = matter.body_of(i);
     let right = zone.body.map_or_else(
@@ -61,7 +61,7 @@ fn reads(zone: &Zone, matter: &Matter, particles: &ParticleStore, i: usize, x: &
         }
 }
 
-/// What there is to tell of a region. Collective.
+/// The measures of a region. Collective.
 pub fn zone(zone: &Zone, particles: &ParticleStore, matter: &Matter, comm: &Comm) -> Findings {
     let readings: Vec<Reading> = zone
         .fields
@@ -71,12 +71,15 @@ pub fn zone(zone: &Zone, particles: &ParticleStore, matter: &Matter, comm: &Comm
     let values: usize = readings.iter().map(|reading| reading.endings().len()).sum();
     let of_chunk = |mut part: Part, chunk: usize| {
         for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(matter.len()) {
-            let codes = std::iter::once(0).chain(matter.mirrors.codes());
-            for code in codes {
-                let x = matter.mirrors.reflect_position(&matter.position[i], code);
+            let mirror_masks = std::iter::once(0).chain(matter.mirrors.masks());
+            for mirror_mask in mirror_masks {
+                let x = matter
+                    .mirrors
+                    .reflect_position(&matter.position[i], mirror_mask);
                 if reads(zone, matter, particles, i, &x) {
                     let read = |reading: &Reading| {
-                        let values: [f64; MOST] = reading.read(matter.case, particles, i, code);
+                        let values: [f64; MOST] =
+                            reading.read(matter.case, particles, i, mirror_mask);
                         values.into_iter().take(reading.endings().len())
                     };
                     part.add(matter.mass[i], readings.iter().flat_map(read));
@@ -105,13 +108,13 @@ pub fn zone(zone: &Zone, particles: &ParticleStore, matter: &Matter, comm: &Comm
     });
     for (k, (name, unit)) in names.enumerate() {
         let there = |value: f64| if mass > 0.0 { value } else { f64::NAN };
-        let mut tell = |what: &str, value: f64| {
+        let mut report = |what: &str, value: f64| {
             let name: Cow<'static, str> = format!("{name}_{what}").into();
             figures.push(Figure::number(name, there(value), unit));
         };
-        tell("mean", all.sums[1 + k].value() / mass);
-        tell("least", 0.0 - most[2 * k + 1]);
-        tell("largest", most[2 * k]);
+        report("mean", all.sums[1 + k].value() / mass);
+        report("least", 0.0 - most[2 * k + 1]);
+        report("largest", most[2 * k]);
     }
     Findings {
         figures,

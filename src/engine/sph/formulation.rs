@@ -15,7 +15,7 @@ pub use stress_points::StressPoints;
 
 use super::shared::Sums;
 use super::signal::SignalSpeed;
-use crate::domain::Shown;
+use crate::domain::Payload;
 use particles::ParticleStore;
 use particles::neighbours::Lists;
 use sums::step::{Side, Step};
@@ -34,7 +34,7 @@ pub(super) trait Formulation: SignalSpeed {
     fn drift(&self, _particles: &mut ParticleStore, _dt: f64, _gravity: &[f64; 3]) {}
 
     /// What else than fields the second sweep is to know of halo particles, if anything.
-    fn shown(&mut self) -> Option<&mut dyn Shown> {
+    fn payload(&mut self) -> Option<&mut dyn Payload> {
         None
     }
 

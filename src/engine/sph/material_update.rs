@@ -82,7 +82,7 @@ impl<'a> MaterialUpdate<'a> {
         lists: &'a Lists,
         step: &Step,
     ) -> Self {
-        points.asks = sums.asks;
+        points.needs_particle = sums.needs_particle;
         Self {
             images: lists.images(),
             materials: &sums.materials,
@@ -109,11 +109,11 @@ impl<'a> MaterialUpdate<'a> {
             self.store_free(cluster, 0);
             return;
         }
-        let base = self.base(cluster);
-        let mut before = self.gather(&base);
+        let slot = self.slot(cluster);
+        let mut before = self.gather(&slot);
         let mut gradient = *gradient;
-        let still = rest::settle(&mut gradient, &before, self.dt, |k| {
-            self.rest[self.points.body[base[k]] as usize]
+        let still = rest::finish(&mut gradient, &before, self.dt, |k| {
+            self.rest[self.points.body[slot[k]] as usize]
         });
         for c in 0..9 {
             for k in 0..LANES {
@@ -121,7 +121,7 @@ impl<'a> MaterialUpdate<'a> {
                 before.velocity_gradient[c][k] = mean;
             }
         }
-        self.advance::<V>(cluster, &base, (before, still), &gradient, neighbours, show);
+        self.advance::<V>(cluster, &slot, (before, still), &gradient, neighbours, show);
     }
 
     /// The same of a cluster of stress points, whose velocity gradient in the middle of the step is
@@ -134,12 +134,12 @@ impl<'a> MaterialUpdate<'a> {
         gradient: &[F64x8; 9],
         neighbours: usize,
     ) {
-        let base = self.base(cluster);
-        let mut before = self.gather(&base);
+        let slot = self.slot(cluster);
+        let mut before = self.gather(&slot);
         for c in 0..9 {
             before.velocity_gradient[c] = mean[c].0;
         }
-        self.advance::<F64x8>(cluster, &base, (before, 0), gradient, neighbours, &());
+        self.advance::<F64x8>(cluster, &slot, (before, 0), gradient, neighbours, &());
     }
 
     /// Adds to the specific energy of particle `i` (J/kg).
@@ -162,7 +162,7 @@ impl<'a> MaterialUpdate<'a> {
             return 0;
         }
         let mut failed = 0;
-        for (k, i) in self.base(cluster).into_iter().enumerate() {
+        for (k, i) in self.slot(cluster).into_iter().enumerate() {
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             failed |= u8::from(unsafe { self.points.has_failed(i) }) << k;
         }
@@ -177,8 +177,8 @@ impl<'a> MaterialUpdate<'a> {
     }
 
     #[inline(always)]
-    fn base(&self, cluster: &Cluster) -> [usize; LANES] {
-        let at = |k: usize| self.images[cluster.receivers[k] as usize].base();
+    fn slot(&self, cluster: &Cluster) -> [usize; LANES] {
+        let at = |k: usize| self.images[cluster.receivers[k] as usize].slot();
         [at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)]
     }
 
@@ -187,7 +187,7 @@ impl<'a> MaterialUpdate<'a> {
     fn advance<V: Lanes>(
         &self,
         cluster: &Cluster,
-        base: &[usize; LANES],
+        slot: &[usize; LANES],
         (mut before, still): (PointBatch, u8),
         gradient: &[F64x8; 9],
         neighbours: usize,
@@ -199,7 +199,7 @@ impl<'a> MaterialUpdate<'a> {
             let strain = half * (xx[k] + yy[k] + zz[k]);
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
-        let material = |k: usize| self.material_of_body[self.points.body[base[k]] as usize];
+        let material = |k: usize| self.material_of_body[self.points.body[slot[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
         let work = OWN_WORK + u32::try_from(work).unwrap_or(u32::MAX / 2);
@@ -210,7 +210,7 @@ impl<'a> MaterialUpdate<'a> {
             }
             let own = material(k);
             let mut after = before;
-            let untorn = self.materials[own].update(&mut after, self.dt);
+            let before_failure = self.materials[own].update(&mut after, self.dt);
             for lane in (0..LANES).filter(|lane| still >> lane & 1 == 1) {
                 after.pressure[lane] = 0.0;
             }
@@ -218,20 +218,20 @@ impl<'a> MaterialUpdate<'a> {
             for lane in k..cluster.lanes {
                 if material(lane) == own {
                     lanes |= 1 << lane;
-                    self.store(base[lane], lane, &after, gradient, work);
+                    self.store(slot[lane], lane, &after, gradient, work);
                 }
             }
             done |= lanes;
             if let Some(recording) = &self.recording {
                 // SAFETY: the particles belong to this cluster alone, and this thread has it.
-                unsafe { recording.book(own, [&before, &after], &untorn, lanes, base) };
+                unsafe { recording.book(own, [&before, &after], &before_failure, lanes, slot) };
             }
             let updated = Updated {
                 before: &before,
                 after: &after,
                 shear_modulus: self.materials[own].strength.shear_modulus(),
                 lanes,
-                particles: base,
+                particles: slot,
                 indices: &cluster.receivers,
             };
             // SAFETY: the places belong to this cluster alone, as its particles do.
@@ -243,7 +243,7 @@ impl<'a> MaterialUpdate<'a> {
     /// speed (m/s).
     pub(super) fn rest(&self, cluster: &Cluster, show: impl Fn(usize, [f64; 2])) {
         for &place in cluster.valid() {
-            let i = self.images[place as usize].base();
+            let i = self.images[place as usize].slot();
             let rest = self.rest[self.points.body[i] as usize];
             let speed = rest.map_or(f64::NAN, |rest| rest.sound_speed);
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
@@ -261,7 +261,7 @@ impl<'a> MaterialUpdate<'a> {
     pub(super) fn store_free(&self, cluster: &Cluster, neighbours: usize) {
         let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
         for &index in &cluster.receivers[..cluster.lanes] {
-            let i = self.images[index as usize].base();
+            let i = self.images[index as usize].slot();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe { self.free(i, 0.0, work) };
         }
@@ -283,18 +283,18 @@ impl<'a> MaterialUpdate<'a> {
 
     /// The state of a cluster's particles, with the last velocity gradients.
     #[inline(always)]
-    fn gather(&self, base: &[usize; LANES]) -> PointBatch {
+    fn gather(&self, slot: &[usize; LANES]) -> PointBatch {
         // SAFETY: these particles belong to this cluster alone, and this thread has the cluster.
-        let mut batch = unsafe { self.points.gather(base) };
+        let mut batch = unsafe { self.points.gather(slot) };
         let half = 0.5 * self.dt;
-        for (k, &i) in base.iter().enumerate() {
+        for (k, &i) in slot.iter().enumerate() {
             batch.specific_energy[k] += half * self.points.heating[i];
         }
-        if self.points.asks
+        if self.points.needs_particle
             && let Some(recording) = &self.recording
         {
             // SAFETY: as above.
-            batch.plastic_energy = unsafe { recording.plastic_energy(base) };
+            batch.plastic_energy = unsafe { recording.plastic_energy(slot) };
         }
         batch
     }

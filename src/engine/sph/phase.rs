@@ -8,7 +8,7 @@ use super::shared::Sums;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::term_records;
-use crate::domain::Shown;
+use crate::domain::Payload;
 use crate::loads::Loads;
 use model::{Case, SphForm};
 use numerics::kernel::Kernel;
@@ -123,8 +123,8 @@ impl Sph {
     }
 
     /// What else than fields the second sweep is to know of halo particles, if anything.
-    pub fn shown(&mut self) -> Option<&mut dyn Shown> {
-        with_form!(&mut self.form, form => form.shown())
+    pub fn payload(&mut self) -> Option<&mut dyn Payload> {
+        with_form!(&mut self.form, form => form.payload())
     }
 
     /// What images have shown in the last second sweep of the corrected form, in the order of the lists.

@@ -29,7 +29,7 @@ impl<'a> Recording<'a> {
         })
     }
 
-    /// Books what an update has made of points of the material `own` and told of them, `untorn`: bit k of
+    /// Books what an update has made of points of the material `own` and told of them, `before_failure`: bit k of
     /// `lanes` is set if lane k is one of them, particle `particles[k]`.
     ///
     /// A function of its own: inside the sweep it slows down cases without records.
@@ -41,7 +41,7 @@ impl<'a> Recording<'a> {
         &self,
         own: usize,
         points: [&PointBatch; 2],
-        untorn: &Numbers,
+        before_failure: &Numbers,
         lanes: u8,
         particles: &[usize; LANES],
     ) {
@@ -49,7 +49,7 @@ impl<'a> Recording<'a> {
             recording: self,
             own,
             points,
-            untorn,
+            before_failure,
             lanes,
             particles,
         };
@@ -81,7 +81,7 @@ struct Booking<'a> {
     own: usize,
     points: [&'a PointBatch; 2],
     /// Pressures (Pa) of the equation of state.
-    untorn: &'a Numbers,
+    before_failure: &'a Numbers,
     lanes: u8,
     particles: &'a [usize; LANES],
 }
@@ -160,8 +160,9 @@ impl Booking<'_> {
         }
         // SAFETY: as of [`Recording::book`].
         let work = unsafe { self.recording.plastic_energy(self.particles) };
-        if let Some(told) = material.updated_temperatures(after, &work, self.untorn) {
-            self.raise(record, V::read(&told), |_| ());
+        if let Some(temperatures) = material.updated_temperatures(after, &work, self.before_failure)
+        {
+            self.raise(record, V::read(&temperatures), |_| ());
         }
     }
 

@@ -16,7 +16,7 @@ use particles::ParticleStore;
 pub struct Resting {
     /// Reference states without stress, by body.
     pub(super) states: Vec<Option<Rest>>,
-    /// Whether the sums of what rests among what rests are zero without a look at neighbours.
+    /// True if the sums of what rests among what rests are zero without a look at neighbours.
     alone: bool,
 }
 
@@ -29,7 +29,7 @@ impl Resting {
         }
     }
 
-    /// Whether owned particle `i` is virgin matter in its reference state, nothing changes it, and no sum needs its
+    /// True if owned particle `i` is virgin matter in its reference state, nothing changes it, and no sum needs its
     /// neighbours, as long as nothing moves around it.
     #[inline]
     #[must_use]
@@ -54,7 +54,7 @@ impl Resting {
 /// Lanes of a batch that are in the reference state `rest` tells of a lane and are strained by less than
 /// [`NEGLIGIBLE`] in a step `dt` (s) with the `gradient` (1/s) at its end, which becomes zero in them: bit k is lane k.
 #[inline(always)]
-pub(super) fn settle(
+pub(super) fn finish(
     gradient: &mut [F64x8; 9],
     before: &PointBatch,
     dt: f64,
@@ -106,7 +106,7 @@ mod tests {
         batch.specific_energy[4] = 1.0;
         gradient[0].0[6] = f64::NAN;
         let given = gradient;
-        let still = settle(&mut gradient, &batch, dt, |k| rest.filter(|_| k != 5));
+        let still = finish(&mut gradient, &batch, dt, |k| rest.filter(|_| k != 5));
         assert_eq!(still, 0b1000_0001);
         for (now, before) in gradient.iter().zip(&given) {
             for k in 0..LANES {

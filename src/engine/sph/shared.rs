@@ -25,8 +25,8 @@ pub(super) struct Sums {
     pub materials: Vec<Material>,
     pub resting: Resting,
     pub material_of_body: Vec<usize>,
-    /// Whether one of these asks for what only some laws must know.
-    pub asks: bool,
+    /// True if one of these asks for what only some laws must know.
+    pub needs_particle: bool,
     /// Pressure (Pa) that counts as arrived, by material.
     pub arrival: Vec<f64>,
     /// What mirror images exert, by chunk.
@@ -59,7 +59,7 @@ impl Sums {
                 .map(|material| case.measure.arrival_of(material))
                 .collect(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
-            asks: case.materials.iter().any(Material::asks),
+            needs_particle: case.materials.iter().any(Material::needs_particle),
             from_mirrors: Vec::new(),
             uncorrected: 0,
         }
@@ -73,7 +73,7 @@ impl Sums {
 
 /// What is made of halo particles and their images, or of the images of this rank's particles,
 /// whose own records the first sweep has written: `show` makes it of a particle's index and an
-/// image's code, and may read the own records.
+/// image's mirror mask, and may read the own records.
 pub(super) fn show_images<R: Send>(
     records: &mut [R],
     owned: usize,
@@ -92,10 +92,10 @@ pub(super) fn show_images<R: Send>(
         .filter(|(eight, _)| sequence.any_images(LANES * eight))
         .for_each(|(eight, images)| {
             for (k, image) in images.iter().enumerate() {
-                let (base, code) = (image.base(), image.code());
-                let of_halo = base >= owned;
-                if side.takes(of_halo) && (of_halo || code != 0) {
-                    let shown = show(&records, base, code);
+                let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
+                let of_halo = slot >= owned;
+                if side.takes(of_halo) && (of_halo || mirror_mask != 0) {
+                    let shown = show(&records, slot, mirror_mask);
                     // SAFETY: each place is visited once, and those of own particles are not.
                     unsafe { *records.slot(LANES * eight + k) = shown };
                 }

@@ -91,7 +91,7 @@ impl Terms {
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
         records.with_min_len(GRAIN).for_each(|(record, &image)| {
-            let i = image.base();
+            let i = image.slot();
             if !side.takes(i >= particles.owned()) {
                 return;
             }
@@ -118,10 +118,10 @@ impl Terms {
 
 /// What an image shows for artificial stress with the factor ε.
 fn repulsion_shown(particles: &ParticleStore, image: Image, epsilon: f64) -> [f64; 6] {
-    let (i, code) = (image.base(), image.code());
+    let (i, mirror_mask) = (image.slot(), image.mirror_mask());
     let stress = &particles.deviatoric_stress[i];
     let own = repulsion(epsilon, particles.pressure[i], stress, particles.density[i]);
-    Mirrors::reflect_symmetric(&own, code)
+    Mirrors::reflect_symmetric(&own, mirror_mask)
 }
 
 /// The factors of the Balsara switch of owned particles, from the first sweep.

@@ -39,15 +39,15 @@ impl<'a> StressForces<'a> {
     /// their particles have no stress: there it is the stress of the particle times its volume.
     #[must_use]
     pub fn virial(&self, place: u32, neighbours: &[u32]) -> Virial {
-        let here = self.lists.images()[place as usize].base();
+        let here = self.lists.images()[place as usize].slot();
         if !matches!(self.form, SphForm::Conventional | SphForm::Corrected) {
             let volume = self.particles.mass[here] / self.particles.density[here];
             return Virial(stress(self.particles, here).map(|s| s * volume));
         }
-        let own = self.shown(place);
+        let own = self.carried(place);
         let motion = self.lists.motion();
         let h = |place: u32| {
-            self.particles.smoothing_length[self.lists.images()[place as usize].base()]
+            self.particles.smoothing_length[self.lists.images()[place as usize].slot()]
         };
         let mut virial = Virial::default();
         for &other in neighbours {
@@ -63,7 +63,7 @@ impl<'a> StressForces<'a> {
             if slope == 0.0 {
                 continue;
             }
-            let their = self.shown(other);
+            let their = self.carried(other);
             let weights = own.weight * their.weight * slope / distance;
             let pull = dot(&minus(&own.hourglass, &their.hourglass), &r) / (distance * distance);
             let force = std::array::from_fn(|a| {
@@ -78,22 +78,23 @@ impl<'a> StressForces<'a> {
     /// What a particle or image brings into the force `w_i w_j (Q_i + Q_j) ∇W_ij`: of conventional
     /// SPH `w = m` and `Q = σ/ρ²`, of the corrected form `w = V` and `Q = A σ B`, with what holds
     /// hourglass displacements.
-    fn shown(&self, place: u32) -> Shown {
+    fn carried(&self, place: u32) -> Carried {
         let image = self.lists.images()[place as usize];
-        let (base, code) = (image.base(), image.code());
+        let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
         let motion = &self.lists.motion()[place as usize];
         let particles = self.particles;
         if self.form == SphForm::Corrected {
             let record = &self.corrected[place as usize];
-            return Shown {
+            return Carried {
                 weight: motion.volume,
                 stress: record.stress,
                 hourglass: record.hourglass,
             };
         }
-        let [xx, yy, zz, xy, xz, yz] = Mirrors::reflect_symmetric(&stress(particles, base), code);
-        let scale = 1.0 / (particles.density[base] * particles.density[base]);
-        Shown {
+        let [xx, yy, zz, xy, xz, yz] =
+            Mirrors::reflect_symmetric(&stress(particles, slot), mirror_mask);
+        let scale = 1.0 / (particles.density[slot] * particles.density[slot]);
+        Carried {
             weight: motion.mass,
             stress: [xx, xy, xz, xy, yy, yz, xz, yz, zz].map(|s| s * scale),
             hourglass: [0.0; 3],
@@ -102,7 +103,7 @@ impl<'a> StressForces<'a> {
 }
 
 /// What a particle brings into the force of a pair.
-struct Shown {
+struct Carried {
     weight: f64,
     stress: [f64; 9],
     hourglass: [f64; 3],

@@ -33,13 +33,13 @@ pub(super) struct Activity {
     unlisted: Inactive,
     /// First candidate and extent of the inactive particles.
     pub kept_candidate: KeptCandidate,
-    /// Whether particles may be deactivated after this step.
+    /// True if particles may be deactivated after this step.
     may_deactivate: bool,
-    /// Whether they could be after an earlier step of this process.
+    /// True if they could be after an earlier step of this process.
     was_tried: bool,
-    /// Whether the search of this step lists the neighbours of all active particles.
+    /// True if the search of this step lists the neighbours of all active particles.
     lists_all: bool,
-    /// Whether a case allows inactive particles.
+    /// True if a case allows inactive particles.
     is_enabled: bool,
     /// Places of fixed gauges, which read the particles around them (m).
     gauges: Vec<[f64; 3]>,
@@ -52,7 +52,7 @@ pub(super) struct Activity {
     from_faces: f64,
     /// Least distance of inactive particles from gauges (m).
     from_gauges: f64,
-    /// Whether pieces of a body may touch that are out of each other's support: contact of unequal particles reaches
+    /// True if pieces of a body may touch that are out of each other's support: contact of unequal particles reaches
     /// farther.
     labels_change: bool,
 }
@@ -67,7 +67,7 @@ pub(super) struct KeptCandidate {
 /// Properties of a part of the store that are kept as long as it is inactive.
 #[derive(Debug, Clone, Copy)]
 struct Part {
-    /// Whether it is inactive and has kept links. In a step whose lists name it as a neighbour it keeps them.
+    /// True if it is inactive and has kept links. In a step whose lists name it as a neighbour it keeps them.
     keeping: Keeping,
     kept: KeptCandidate,
     /// Sum of the labels of its particles.
@@ -115,8 +115,8 @@ impl Activity {
         let mirrors = Mirrors::new(&case.symmetry);
         let fixed = case.measure.gauges.iter().filter(|gauge| !gauge.moves);
         let gauges = fixed.flat_map(|gauge| {
-            let codes = std::iter::once(0).chain(mirrors.codes());
-            codes.map(|code| mirrors.reflect_position(&gauge.at, code))
+            let mirror_masks = std::iter::once(0).chain(mirrors.masks());
+            mirror_masks.map(|mirror_mask| mirrors.reflect_position(&gauge.at, mirror_mask))
         });
         Self {
             gauges: gauges.collect(),
@@ -220,7 +220,7 @@ impl Activity {
         &self.unlisted
     }
 
-    /// Whether the search of this step lists the neighbours of all active particles.
+    /// True if the search of this step lists the neighbours of all active particles.
     pub fn lists_all(&self) -> bool {
         self.lists_all
     }
@@ -321,7 +321,7 @@ impl Activity {
             for (cluster, _, among) in chunk.iter() {
                 if among.resting && lists.is_still(cluster.group) {
                     for &place in cluster.valid() {
-                        let part = images[place as usize].base() / PART;
+                        let part = images[place as usize].slot() / PART;
                         resting[part].fetch_add(1, Relaxed);
                     }
                 }
@@ -345,7 +345,7 @@ impl Part {
         self.keeping != Keeping::No
     }
 
-    /// Whether all particles of a part stand still; if so, keeps their first candidate, extent and labels.
+    /// True if all particles of a part stand still; if so, keeps their first candidate, extent and labels.
     fn is_still<F: SignalSpeed>(
         &mut self,
         particles: &ParticleStore,
@@ -377,7 +377,7 @@ impl Part {
         true
     }
 
-    /// Whether its particles have been labelled anew, as another part of a body.
+    /// True if its particles have been labelled anew, as another part of a body.
     fn has_new_label(&self, particles: &ParticleStore, part: usize) -> bool {
         self.label != label(particles, part)
     }
@@ -390,13 +390,13 @@ fn label(particles: &ParticleStore, part: usize) -> u64 {
     labels.fold(0, |sum, &label| sum.wrapping_add(label))
 }
 
-/// Whether particles are so far (m) within the faces of a region.
+/// True if particles are so far (m) within the faces of a region.
 fn is_inside(span: &Span, region: &Brick, far: f64) -> bool {
     let [lower, upper] = span.bounds();
     (0..3).all(|a| lower[a] - far >= region.lower[a] && upper[a] + far <= region.upper[a])
 }
 
-/// Whether a point is so near (m) to particles.
+/// True if a point is so near (m) to particles.
 fn is_around(span: &Span, point: &[f64; 3], far: f64) -> bool {
     let [lower, upper] = span.bounds();
     (0..3).all(|a| (lower[a] - far..=upper[a] + far).contains(&point[a]))

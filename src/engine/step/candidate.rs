@@ -160,7 +160,7 @@ impl BestCandidate {
         }
     }
 
-    /// Whether a candidate by sound is the best one too.
+    /// True if a candidate by sound is the best one too.
     #[inline(always)]
     fn is_matched(&self, h: f64, signal: f64) -> bool {
         self.by_sound == Some([h, signal])
@@ -279,7 +279,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         }
     }
 
-    /// Whether a particle is sound and asks for more than the smallest step so far: the criteria of
+    /// True if a particle is sound and asks for more than the smallest step so far: the criteria of
     /// [`Self::candidate`], multiplied out. NaN is beyond nothing.
     #[inline(always)]
     fn is_beyond(&self, i: usize, moved: &Moved, best: &BestCandidate) -> bool {

@@ -28,19 +28,19 @@ pub struct Carried {
 #[must_use]
 pub fn carried_in(simulation: &Simulation) -> Vec<Carried> {
     let (particles, lists) = (&simulation.particles, &simulation.search.lists);
-    let borne = (simulation.contact).borne(particles, lists, simulation.state.last_dt);
+    let carried = (simulation.contact).carried(particles, lists, simulation.state.last_dt);
     let forces = StressForces::new(&simulation.case, particles, lists, &simulation.sph);
     of_receivers(lists, |i, place, neighbours| {
-        let at = borne.binary_search_by_key(&i, |(i, _)| *i).ok()?;
-        let borne = &borne[at].1;
+        let at = carried.binary_search_by_key(&i, |(i, _)| *i).ok()?;
+        let carried = &carried[at].1;
         let mut virial = forces.virial(place, neighbours);
-        virial.join(&borne.virial);
+        virial.join(&carried.virial);
         let volume = particles.mass[i] / particles.density[i];
-        let press = norm(&borne.press);
+        let press = norm(&carried.press);
         Some(Carried {
             particle: i,
             stress: virial.0.map(|v| v / volume),
-            normal: borne.press.map(|f| f / press),
+            normal: carried.press.map(|f| f / press),
         })
     })
 }
@@ -92,17 +92,17 @@ fn mean_carried(
     neighbours: &[u32],
 ) -> [f64; 6] {
     let (images, motion) = (lists.images(), lists.motion());
-    let h = |place: u32| particles.smoothing_length[images[place as usize].base()];
+    let h = |place: u32| particles.smoothing_length[images[place as usize].slot()];
     let (mut sum, mut weights) = ([0.0; 6], 0.0);
     for &other in neighbours {
         let (image, record) = (images[other as usize], &motion[other as usize]);
-        let carried = &particles.contact_stress[image.base()];
+        let carried = &particles.contact_stress[image.slot()];
         if *carried == [0.0; 6] {
             continue;
         }
         let distance = norm(&minus(&motion[place as usize].position, &record.position));
         let weight = record.volume * kernel.value(distance, 0.5 * (h(place) + h(other)));
-        let carried = Mirrors::reflect_symmetric(carried, image.code());
+        let carried = Mirrors::reflect_symmetric(carried, image.mirror_mask());
         weights += weight;
         for k in 0..6 {
             sum[k] += weight * carried[k];
@@ -123,7 +123,7 @@ fn of_receivers<T: Send>(
         let mut found = Vec::new();
         for (cluster, neighbours, _) in chunk.iter() {
             for &place in &cluster.receivers[..cluster.lanes] {
-                let i = lists.images()[place as usize].base();
+                let i = lists.images()[place as usize].slot();
                 found.extend(work(i, place, neighbours));
             }
         }

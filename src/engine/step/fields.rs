@@ -60,7 +60,7 @@ pub fn store_of(case: &Case) -> ParticleStore {
     particles
 }
 
-/// Bytes of a halo particle in each message of a step between two ranks: its motion, with the codes of
+/// Bytes of a halo particle in each message of a step between two ranks: its motion, with the mirror masks of
 /// its images; its fields for the forces; its friction, if there is any.
 #[must_use]
 pub fn bytes_of_messages(case: &Case) -> Vec<usize> {

@@ -56,20 +56,20 @@ struct Search {
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     bodies: [usize; 2],
-    code: u8,
+    mirror_mask: u8,
     h: f64,
     spans: [Span; 2],
 }
 
 impl Meeting {
     fn longest_step(&self, mirrors: &Mirrors) -> f64 {
-        let image = self.spans[1].reflected(mirrors, self.code);
+        let image = self.spans[1].reflected(mirrors, self.mirror_mask);
         self.spans[0].longest_step(&image, self.h)
     }
 
-    /// Whether a particle of one side can meet the other in a step `dt` (s) unseen.
+    /// True if a particle of one side can meet the other in a step `dt` (s) unseen.
     fn concerns(&self, mirrors: &Mirrors, side: usize, point: &Span, dt: f64) -> bool {
-        let other = self.spans[1 - side].reflected(mirrors, self.code);
+        let other = self.spans[1 - side].reflected(mirrors, self.mirror_mask);
         point.longest_step(&other, self.h) < dt
     }
 }
@@ -115,8 +115,8 @@ impl Flight {
             }
         }
         let mut images = all;
-        for code in inputs.mirrors.codes() {
-            images.join(&all.reflected(inputs.mirrors, code));
+        for mirror_mask in inputs.mirrors.masks() {
+            images.join(&all.reflected(inputs.mirrors, mirror_mask));
         }
         let flyers = Flyers {
             particles: inputs.particles,
@@ -269,13 +269,13 @@ impl Search {
                 let Some(pair) = inputs.table.between(a, b) else {
                     continue;
                 };
-                let meet = |code| Meeting {
+                let meet = |mirror_mask| Meeting {
                     bodies: [a, b],
-                    code,
+                    mirror_mask,
                     h: pair.h,
                     spans: [spans[a], spans[b]],
                 };
-                let all = std::iter::once(0).chain(mirrors.codes()).map(meet);
+                let all = std::iter::once(0).chain(mirrors.masks()).map(meet);
                 meetings.extend(all.filter(|meeting| meeting.longest_step(mirrors) < dt));
             }
         }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::candidate::{BestCandidate, Candidate, Criteria, CriteriaInputs, criteria_fields};
 use crate::diagnose::Moved;
 use crate::domain::Span;
-use crate::loads::{Free, Goal, Loads, Prescribe};
+use crate::loads::{Free, Loads, Prescribe, VelocityStage};
 use crate::sph::{SignalSpeed, Smoothing};
 use numerics::exact_sum::ExactSum;
 use numerics::vector::dot;
@@ -164,18 +164,18 @@ impl Drifting<'_> {
                         let a = &rates.acceleration[i];
                         let mut total = kick.total(a, &contact);
                         let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
-                        prescribed.accelerate(Goal::Middle, &v[k], per_half, &mut total);
+                        prescribed.accelerate(VelocityStage::Middle, &v[k], per_half, &mut total);
                         e[k] += half * (rates.heating[i] - 0.25 * dt * dot(a, &total));
                         let whole = v[k];
                         v[k] = add_scaled(&v[k], half, &total);
-                        prescribed.set(Goal::Middle, &mut v[k]);
+                        prescribed.set(VelocityStage::Middle, &mut v[k]);
                         if contact != [0.0; 3] {
                             prescribed.correct_mean(&whole, &v[k], &mut mean);
                             work.add(half * rates.mass[i] * dot(&contact, &mean));
                         }
                         x[k] = add_scaled(&x[k], dt, &v[k]);
                         v_p[k] = add_scaled(&v[k], half, &total);
-                        prescribed.set(Goal::End, &mut v_p[k]);
+                        prescribed.set(VelocityStage::End, &mut v_p[k]);
                         let l = &rates.velocity_gradient[i];
                         let strain = half * (l[0] + l[4] + l[8]);
                         rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
@@ -265,10 +265,10 @@ impl Kicking<'_> {
                         let a = &fields.acceleration[i];
                         let forces = kick.total(a, &contact);
                         let mut total = forces;
-                        prescribed.accelerate(Goal::End, &v[k], per_half, &mut total);
+                        prescribed.accelerate(VelocityStage::End, &v[k], per_half, &mut total);
                         let middle = v[k];
                         v[k] = add_scaled(&v[k], half, &total);
-                        prescribed.set(Goal::End, &mut v[k]);
+                        prescribed.set(VelocityStage::End, &mut v[k]);
                         span.add(&fields.position[i], &v[k]);
                         if contact != [0.0; 3] {
                             let mut mean = add_scaled(&v[k], -0.25 * dt, &forces);

@@ -26,10 +26,10 @@ pub(super) struct KeptLinks {
     collector: Collector,
 }
 
-/// Two particles, and the code of the image of the second one.
+/// Two particles, and the mirror mask of the image of the second one.
 type Link = [u32; 3];
 
-/// Whether links of a part are kept.
+/// True if links of a part are kept.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) enum Keeping {
     /// Its links are not kept.
@@ -68,7 +68,7 @@ impl KeptLinks {
         std::mem::swap(&mut self.links, &mut self.spare);
     }
 
-    /// Whether a part that is kept has links with parts that are not.
+    /// True if a part that is kept has links with parts that are not.
     pub fn is_border(&self, part: usize) -> bool {
         self.borders[part].load(Relaxed)
     }
@@ -84,8 +84,8 @@ impl KeptLinks {
                 }
             });
         let links = self.links.par_iter().with_min_len(GRAIN);
-        links.for_each(|&[a, b, code]| {
-            sets.mark(a, code);
+        links.for_each(|&[a, b, mirror_mask]| {
+            sets.mark(a, mirror_mask);
             sets.join(a, b);
         });
     }
@@ -151,7 +151,7 @@ struct Seen<'a, F> {
 }
 
 impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
-    /// Whether links of the part of a particle are kept.
+    /// True if links of the part of a particle are kept.
     fn of(&self, i: usize) -> Keeping {
         let part = i / PART;
         if part < self.parts {
@@ -167,7 +167,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         self.lists.chunks().par_iter().for_each(|chunk| {
             let receivers = chunk.iter().flat_map(|(cluster, ..)| cluster.valid());
             for &i in receivers {
-                let own = images[i as usize].base();
+                let own = images[i as usize].slot();
                 if self.of(own) != Keeping::No {
                     borders[own / PART].store(false, Relaxed);
                 }
@@ -180,15 +180,16 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         let (images, lists) = (self.lists.images(), self.lists);
         lists.chunks().par_iter().for_each(|chunk| {
             for (cluster, neighbours, _) in chunk.iter() {
-                let own = cluster.receivers.map(|i| images[i as usize].base());
+                let own = cluster.receivers.map(|i| images[i as usize].slot());
                 let keeping = own.map(|i| self.of(i));
                 if keeping == [Keeping::No; LANES] {
                     continue;
                 }
                 let mut here = own.map(|i| sets.root(place(0, i)));
                 for &j in neighbours {
-                    let (base, code) = (images[j as usize].base(), images[j as usize].code());
-                    let is_kept = self.of(base) != Keeping::No;
+                    let (slot, mirror_mask) =
+                        (images[j as usize].slot(), images[j as usize].mirror_mask());
+                    let is_kept = self.of(slot) != Keeping::No;
                     for (k, &i) in cluster.valid().iter().enumerate() {
                         let part = own[k] / PART;
                         if !is_kept {
@@ -198,9 +199,12 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                             {
                                 borders[part].store(true, Relaxed);
                             }
-                        } else if keeping[k] == Keeping::New && base / PART == part && code == 0 {
+                        } else if keeping[k] == Keeping::New
+                            && slot / PART == part
+                            && mirror_mask == 0
+                        {
                             // Roots may be old, which costs a look more.
-                            let there = sets.root(place(0, base));
+                            let there = sets.root(place(0, slot));
                             if there != here[k] && lists.in_support(cluster.group, i, j) {
                                 sets.join(here[k], there);
                                 here[k] = sets.root(place(0, own[k]));
@@ -229,26 +233,26 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
         pairs.flat_map(move |(cluster, j)| {
             if receivers.of != Some(cluster.receivers) {
                 receivers.take(cluster, |i| {
-                    let own = images[i as usize].base();
+                    let own = images[i as usize].slot();
                     let keeping = self.of(own);
                     (keeping != Keeping::No).then(|| (first(own), keeping))
                 });
             }
-            let (base, code) = (images[j as usize].base(), images[j as usize].code());
-            let their = self.of(base);
+            let (slot, mirror_mask) = (images[j as usize].slot(), images[j as usize].mirror_mask());
+            let their = self.of(slot);
             let (mut links, mut count) = ([[0; 3]; LANES], 0);
             if their != Keeping::No {
-                let there = first(base);
+                let there = first(slot);
                 for &(here, keeping, lanes) in receivers.kept() {
                     let is_new = [keeping, their].contains(&Keeping::New);
-                    let is_inner = here as usize / PART == base / PART && code == 0;
+                    let is_inner = here as usize / PART == slot / PART && mirror_mask == 0;
                     if !is_new || is_inner {
                         continue;
                     }
-                    let link = match u32::from(code) {
+                    let link = match u32::from(mirror_mask) {
                         // Seen from both sides.
                         0 => [here.min(there), here.max(there), 0],
-                        code => [here, there, code],
+                        mirror_mask => [here, there, mirror_mask],
                     };
                     let last = &mut recent[slot(&link)];
                     let is_near = |lane: usize| {
@@ -304,7 +308,7 @@ impl Receivers {
 /// Links remembered so that few are found twice.
 const RECENT: usize = 256;
 
-fn slot(&[a, b, code]: &Link) -> usize {
-    let mixed = (a ^ b.rotate_left(16) ^ code).wrapping_mul(0x9e37_79b9);
+fn slot(&[a, b, mirror_mask]: &Link) -> usize {
+    let mixed = (a ^ b.rotate_left(16) ^ mirror_mask).wrapping_mul(0x9e37_79b9);
     (mixed >> 24) as usize
 }

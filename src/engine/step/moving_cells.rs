@@ -45,7 +45,7 @@ impl MovingCells {
         size_of::<[i64; 3]>() * self.cells.capacity() + self.collector.memory()
     }
 
-    /// Whether any of them is within so many widths of particles.
+    /// True if any of them is within so many widths of particles.
     pub fn is_near(&self, span: &Span, widths: f64) -> bool {
         let [lower, upper] = span.bounds();
         let cell = |x: f64, way: f64| index(x + way * widths * self.width, self.width);

@@ -3,7 +3,7 @@
 use super::activity::{Activity, Surroundings};
 use super::candidate::{Criteria, CriteriaInputs, criteria_fields};
 use crate::contact::{Connectivity, Contact, ContactTable};
-use crate::domain::{Halo, Outset};
+use crate::domain::{Halo, InitialLayout};
 use crate::fragments::Labels;
 use crate::sph::{Sph, with_formulation};
 use comm::Comm;
@@ -41,9 +41,9 @@ pub(super) struct ActivityInputs<'a> {
 }
 
 impl Search {
-    pub(super) fn new(case: &Case, table: &ContactTable, outset: &Outset) -> Self {
+    pub(super) fn new(case: &Case, table: &ContactTable, layout: &InitialLayout) -> Self {
         Self {
-            lists: Lists::new(case, table.groups.clone(), &outset.boxes, outset.longest),
+            lists: Lists::new(case, table.groups.clone(), &layout.boxes, layout.longest),
             activity: Activity::new(case),
             labels: Labels::default(),
         }
@@ -104,7 +104,7 @@ impl Search {
             // At the start there are no rates yet.
             step > 0
                 && connectivity.lets_rest(particles, image)
-                && resting.holds(particles, image.base())
+                && resting.holds(particles, image.slot())
         };
         let spared = !(connectivity.is_due(step) || activity.lists_all());
         lists.build(active, halo.images(), foreign, rests, spared, scratch);

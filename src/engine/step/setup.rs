@@ -4,7 +4,7 @@ use super::error::SetupError;
 use super::file_values::set_from_file;
 use crate::contact::Connectivity;
 use crate::domain::{Decomposition, Partition};
-use crate::loads::{Absorption, Goal, Loads, Prescribe};
+use crate::loads::{Absorption, Loads, Prescribe, VelocityStage};
 use comm::Comm;
 use model::{Body, Case, SphForm, edge};
 use particles::{Image, ParticleStore};
@@ -95,8 +95,8 @@ impl Filling<'_> {
                 if loads.has_motions() {
                     let bits = loads.bits(case, b, &site.position);
                     let prescribed = loads.of(bits);
-                    prescribed.set(Goal::End, &mut particles.velocity[i]);
-                    prescribed.set(Goal::End, &mut particles.predicted_velocity[i]);
+                    prescribed.set(VelocityStage::End, &mut particles.velocity[i]);
+                    prescribed.set(VelocityStage::End, &mut particles.predicted_velocity[i]);
                     particles.load[i] = bits;
                 }
                 if loads.absorb() {
@@ -145,7 +145,7 @@ struct Start<'a> {
     number: u32,
     /// Of a whole particle (kg).
     mass: f64,
-    /// Whether they hold heat and plastic strain.
+    /// True if they hold heat and plastic strain.
     holds_state: bool,
 }
 

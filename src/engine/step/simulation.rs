@@ -17,7 +17,7 @@ use crate::diagnose::{
     Booked, Leave, LoadState, NumericalFailure, PairState, Passed, Reason, Removed, RunState,
     Votes, Worst, angular_momentum_scale,
 };
-use crate::domain::{Halo, NestedSlabs, Outset, Partition};
+use crate::domain::{Halo, InitialLayout, NestedSlabs, Partition};
 use crate::loads::Loads;
 use crate::measure::Gauges;
 use crate::sph::{Side, Sph, Step, with_formulation};
@@ -60,9 +60,9 @@ impl Simulation {
     /// # Errors
     /// The same on all ranks if the case has no particles or too many, or blows up at once.
     pub fn start(case: Case, comm: &Comm) -> Result<Self, SetupError> {
-        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
-        let partition = Partition::new(&case, comm, &outset);
-        let mut simulation = Self::empty(case, comm, &outset, partition);
+        let layout = InitialLayout::new(&case).ok_or(SetupError::Empty)?;
+        let partition = Partition::new(&case, comm, &layout);
+        let mut simulation = Self::empty(case, comm, &layout, partition);
         let Self {
             case,
             particles,
@@ -87,9 +87,9 @@ impl Simulation {
         state: RunState,
         particles: ParticleStore,
     ) -> Result<Self, SetupError> {
-        let outset = Outset::new(&case).ok_or(SetupError::Empty)?;
-        let partition = Partition::none(&case, comm, &outset);
-        let mut simulation = Self::empty(case, comm, &outset, partition);
+        let layout = InitialLayout::new(&case).ok_or(SetupError::Empty)?;
+        let partition = Partition::none(&case, comm, &layout);
+        let mut simulation = Self::empty(case, comm, &layout, partition);
         let beginning = Beginning {
             case: &simulation.case,
             state: &simulation.state,
@@ -117,7 +117,7 @@ impl Simulation {
     }
 
     /// A case without particles.
-    fn empty(case: Case, comm: &Comm, outset: &Outset, partition: Partition) -> Self {
+    fn empty(case: Case, comm: &Comm, layout: &InitialLayout, partition: Partition) -> Self {
         let contact = Contact::new(&case);
         let table = &contact.table;
         let accounts = Accounts::new(&case, table);
@@ -137,7 +137,7 @@ impl Simulation {
                 partition,
                 halo: Halo::new(Mirrors::new(&case.symmetry)),
             },
-            search: Search::new(&case, table, outset),
+            search: Search::new(&case, table, layout),
             sph: Sph::new(&case),
             loads: Loads::new(&case),
             accounts,
@@ -356,11 +356,16 @@ impl Simulation {
         contact.measure(particles, lists, dt);
         timers.lap(Phase::ContactFractions);
         let stress = contact.halo_of_forces();
-        halo.post(comm, particles, stress, sph.shown().map(|shown| &*shown));
+        halo.post(
+            comm,
+            particles,
+            stress,
+            sph.payload().map(|payload| &*payload),
+        );
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Inner);
         timers.lap(Phase::Momentum);
-        halo.finish(particles, stress, sph.shown());
+        halo.finish(particles, stress, sph.payload());
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Outer);
         timers.lap(Phase::Momentum);
@@ -562,7 +567,7 @@ impl Simulation {
         Ok(count)
     }
 
-    /// Whether the case has reached its end.
+    /// True if the case has reached its end.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         let run = &self.case.run;

@@ -18,7 +18,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Whether a restart may change the key.
+    /// True if a restart may change the key.
     #[must_use]
     pub fn is_restartable(&self) -> bool {
         let section = self.key.split('.').next().unwrap_or_default();
@@ -149,8 +149,8 @@ title = "a"
     fn keys_are_named_with_both_values() {
         let edited = CASE.replace("7 km/s", "8 km/s").replace("0.2us", "0.3us");
         let found = differences(CASE, &format!("{edited}shape = 1\n")).unwrap();
-        let told: Vec<String> = found.iter().map(|found| format!("{found:?}")).collect();
-        assert_eq!(found.len(), 3, "{told:?}");
+        let texts: Vec<String> = found.iter().map(|found| format!("{found:?}")).collect();
+        assert_eq!(found.len(), 3, "{texts:?}");
         assert_eq!(found[0].key, "run.end_time");
         assert!(found[0].is_restartable() && !found[1].is_restartable());
         assert_eq!(found[1].key, "body.ball.velocity");

@@ -267,7 +267,7 @@ mod tests {
             case.resolved.clear();
             format!("{case:?}")
         };
-        let usual = case(&[]);
+        let default = case(&[]);
         let (_, lines) = explain(&path, &[]).unwrap();
         let (mut place, mut tried) = (String::new(), 0);
         for line in lines {
@@ -283,7 +283,7 @@ mod tests {
                     ..
                 } if !key.ends_with("mean_time_between_failures") => {
                     let set = format!("{place}{key}={value}");
-                    assert_eq!(case(std::slice::from_ref(&set)), usual, "{set}");
+                    assert_eq!(case(std::slice::from_ref(&set)), default, "{set}");
                     tried += 1;
                 }
                 _ => {}

@@ -253,7 +253,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether the dimension has a name of a place.
+    /// True if the dimension has a name of a place.
     fn exists(&self, index: usize) -> bool {
         // x, y, z, r, and the centre's.
         index == 3 || index % 4 < self.dimension

@@ -18,8 +18,8 @@ mod obj;
 mod overrides;
 mod profile;
 mod quantity;
+mod resolved;
 mod schema;
-mod settle;
 mod source;
 mod stl;
 mod triangles;
@@ -99,7 +99,7 @@ pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, Input
         let (params, resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut case = validate::case(&params, folder)?;
-        case.resolved = settle::settle(resolved, folder, &case)?;
+        case.resolved = resolved::with_files(resolved, folder, &case)?;
         Ok(case)
     })
 }

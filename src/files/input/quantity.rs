@@ -187,7 +187,7 @@ pub(super) struct TextVisitor<T> {
     pub(super) expected: fn() -> String,
     /// Makes what is wanted of a text.
     pub(super) read: fn(&str) -> Result<T, String>,
-    /// Whether any plain number will do.
+    /// True if any plain number will do.
     pub(super) takes_numbers: bool,
 }
 

@@ -145,7 +145,7 @@ tables! {
         plastic_strain: Option<Spanned<ProfileParams<Strain>>> => "none";
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
-        /// Whether the body is rigid and keeps its velocity, whatever acts on it.
+        /// True if the body is rigid and keeps its velocity, whatever acts on it.
         rigid: Option<bool> = false;
         /// Motion of a rigid body.
         motion: Option<Spanned<MotionParams>> => "its `velocity` for ever";
@@ -175,7 +175,7 @@ tables! {
         body: Spanned<String>;
         /// Directions out of the body in which it goes on.
         faces: Option<Spanned<Vec<Spanned<NormalParams>>>> => "none";
-        /// Whether it goes on beyond its curved face, or which one that is.
+        /// True if it goes on beyond its curved face, or which one that is.
         round: Option<Spanned<RoundParams>> => "false";
         /// How far the zone reaches into the body.
         depth: Option<Spanned<Extent>> => "30 spacings";

@@ -9,8 +9,8 @@ use super::particles::Particles;
 use crate::preflight::UNEVEN;
 use comm::{Comm, Traffic};
 use engine::domain::{
-    Balance, Decomposition, GREETING, NestedSlabs, Outset, RankSpeeds, Sent, Tally, greetings,
-    tally,
+    Balance, Decomposition, EXTENT_MESSAGE, InitialLayout, NestedSlabs, RankSpeeds, Sent, Tally,
+    extent_exchange, tally,
 };
 use engine::step::bytes_of_messages;
 use model::Case;
@@ -79,9 +79,9 @@ pub fn slabs_at_start(
     ranks: usize,
     levels: Option<usize>,
 ) -> Option<NestedSlabs> {
-    let (solo, outset) = (Comm::solo(), Outset::new(case)?);
+    let (solo, layout) = (Comm::solo(), InitialLayout::new(case)?);
     let mut balance = Balance::default();
-    let mut slabs = outset.slabs(case, &solo, (ranks, levels), &mut balance);
+    let mut slabs = layout.slabs(case, &solo, (ranks, levels), &mut balance);
     // As a run does after it has distributed particles outside of the slabs that they were made in.
     if ranks > 1 && case.bodies.iter().any(populate::moves_sites) {
         cut(&mut slabs, particles, &mut balance);
@@ -99,12 +99,12 @@ pub fn slabs_of(
     ranks: usize,
     levels: Option<usize>,
 ) -> Option<NestedSlabs> {
-    let outset = Outset::new(case)?;
+    let layout = InitialLayout::new(case)?;
     let (all, balance) = (
         (particles.positions.as_slice(), particles.reach.as_slice()),
         &mut Balance::default(),
     );
-    Some(outset.slabs_of(case, &Comm::solo(), (ranks, levels), all, balance))
+    Some(layout.slabs_of(case, &Comm::solo(), (ranks, levels), all, balance))
 }
 
 /// Moves faces so that each rank has as many particles.
@@ -181,8 +181,8 @@ pub fn loads_of(
         send(sent.from, sent.to, traffic_of(sent, bytes));
     });
     let farthest = particles.reach.iter().copied().fold(0.0, f64::max);
-    greetings(slabs, farthest, |from, to| {
-        send(from, to, Traffic::of(GREETING));
+    extent_exchange(slabs, farthest, |from, to| {
+        send(from, to, Traffic::of(EXTENT_MESSAGE));
     });
     for (load, tally) in loads.iter_mut().zip(tallies) {
         load.tally = tally;

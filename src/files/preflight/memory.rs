@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::costs::{Costs, uneven};
 use comm::Comm;
-use engine::domain::{Fullest, Histogram, Outset, reach};
+use engine::domain::{Fullest, Histogram, InitialLayout, reach};
 use model::{Case, SphForm};
 use populate;
 
@@ -43,12 +43,12 @@ pub fn fullest_of(case: &Case, comm: &Comm, ranks: usize) -> Fullest {
 /// axis. `None` for a case without particles. Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
-    let outset = Outset::new(case)?;
-    let known = outset.known_levels(case, ranks);
+    let layout = InitialLayout::new(case)?;
+    let known = layout.known_levels(case, ranks);
     if known == Some(1) {
-        return Some(fullest_slab(case, &outset, comm, ranks));
+        return Some(fullest_slab(case, &layout, comm, ranks));
     }
-    let forecast = outset.forecast(case, comm);
+    let forecast = layout.forecast(case, comm);
     let levels = known.unwrap_or_else(|| forecast.levels(ranks));
     let fullest = forecast.fullest(levels, ranks);
     let even = forecast.total() / ranks as f64;
@@ -61,9 +61,9 @@ fn fullest(case: &Case, comm: &Comm, ranks: usize) -> Option<Fullest> {
 /// The most particles of one of `ranks` ranks in slabs of one level, from one count along their axis.
 /// Collective.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn fullest_slab(case: &Case, outset: &Outset, comm: &Comm, ranks: usize) -> Fullest {
+fn fullest_slab(case: &Case, layout: &InitialLayout, comm: &Comm, ranks: usize) -> Fullest {
     let mut histogram = Histogram::default();
-    outset.count(case, comm, ranks, &mut histogram);
+    layout.count(case, comm, ranks, &mut histogram);
     histogram.sum(comm);
     let count = histogram.cumulate(0);
     let even = count.total() as f64 / ranks as f64;
@@ -276,11 +276,11 @@ mod tests {
         let positions: Vec<[f64; 3]> = sites.map(|site| site.position).collect();
         let reaches = vec![0.5 * reach(&case); positions.len()];
         let solo = Comm::solo();
-        let outset = Outset::new(&case).unwrap();
-        let forecast = outset.forecast(&case, &solo);
+        let layout = InitialLayout::new(&case).unwrap();
+        let forecast = layout.forecast(&case, &solo);
         assert_eq!(forecast.total(), positions.len() as f64);
         for (ranks, levels) in [(8, 1), (8, 2), (8, 3), (30, 2), (60, 3)] {
-            let slabs = outset.slabs(&case, &solo, (ranks, Some(levels)), &mut Balance::default());
+            let slabs = layout.slabs(&case, &solo, (ranks, Some(levels)), &mut Balance::default());
             let tallies = tally(&slabs, &Mirrors::default(), (&positions, &reaches), |_| {});
             let most = |of: fn(&Tally) -> u64| tallies.iter().map(of).max().unwrap() as f64;
             let (owned, halo) = (most(|tally| tally.owned), most(|tally| tally.halo));

@@ -29,7 +29,7 @@ pub struct Response {
 
 /// One equation of state.
 pub trait EquationOfState: Listed {
-    /// Whether it acts in a function of its own, as equations that raise to powers do: inside the vector code, their
+    /// True if it acts in a function of its own, as equations that raise to powers do: inside the vector code, their
     /// calls slow down those that have no need of them.
     const APART: bool = false;
 

@@ -1,6 +1,6 @@
 //! What damage does, whichever law of failure advances it.
 //!
-//! Matter whose damage D has reached one has failed. With the usual [`Manner`] it bears pressure and
+//! Matter whose damage D has reached one has failed. With the default [`FailureOptions`] it bears pressure and
 //! nothing else; where damage scales, shear and tension are `1 − D` of those of the matter between
 //! the cracks already before. What damage takes in a step it takes of the stress at the end of that
 //! step, whose elastic energy stays in the matter as heat and is told by
@@ -37,7 +37,7 @@
 //! so that sums cannot tell less. Without an end, the volume m/ρ by which a particle counts in its
 //! neighbours' sums grows for ever, and their gradients with it.
 
-use super::failure::{Effect, FAILED, Manner, Molten};
+use super::failure::{Effect, FAILED, FailureOptions, Molten};
 use super::principal_tension::largest;
 use super::{Conditions, LANES, Lanes, PointBatch};
 use crate::{at_least, at_most};
@@ -58,15 +58,15 @@ pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
 
 /// Failed matter bears no tension, damaged matter what damage leaves of it.
 #[inline(always)]
-pub(super) fn limit_tension(point: &mut PointBatch, manner: &Manner) {
-    if manner.effect == Effect::Scaled {
+pub(super) fn limit_tension(point: &mut PointBatch, options: &FailureOptions) {
+    if options.effect == Effect::Scaled {
         for k in 0..LANES {
             if point.pressure[k] < 0.0 {
-                point.pressure[k] *= 1.0 - manner.taken(point.damage[k]);
+                point.pressure[k] *= 1.0 - options.taken(point.damage[k]);
             }
         }
     }
-    let tension_lost = manner.effect == Effect::TensionLost;
+    let tension_lost = options.effect == Effect::TensionLost;
     for k in 0..LANES {
         if point.damage[k] >= FAILED {
             // Open cracks are in no equation of state: what shear holds tells the pressure with it.
@@ -84,11 +84,11 @@ pub(super) fn limit_tension(point: &mut PointBatch, manner: &Manner) {
 /// damaged matter has what damage leaves of both.
 #[inline(always)]
 pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
-    if now.manner.effect == Effect::TensionLost {
+    if now.options.effect == Effect::TensionLost {
         return;
     }
     for k in 0..LANES {
-        let kept = 1.0 - now.manner.taken(point.damage[k]);
+        let kept = 1.0 - now.options.taken(point.damage[k]);
         now.kept[k] = kept;
         now.shear_modulus[k] *= kept;
         now.softening[k] *= kept;
@@ -100,7 +100,7 @@ pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
 #[inline(always)]
 pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
     let melting = now.thermal.melting_temperature;
-    let Some(melting) = melting.filter(|_| now.manner.molten == Molten::Fails) else {
+    let Some(melting) = melting.filter(|_| now.options.molten == Molten::Fails) else {
         return;
     };
     for k in 0..LANES {
@@ -139,7 +139,7 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
 #[inline(always)]
 pub(super) fn spend(point: &mut PointBatch, k: usize, power: f64, now: &Conditions) {
     let spent = now.size(point, k) * at_least(power / now.kept[k], 0.0) * now.dt;
-    point.damage[k] += spent / (2.0 * now.manner.fracture_energy);
+    point.damage[k] += spent / (2.0 * now.options.fracture_energy);
 }
 
 /// Matter lets go of what damage has taken since `before`, or of all that failed matter does not
@@ -151,16 +151,16 @@ pub(super) fn let_go(
     before: &Lanes,
     bulk_modulus: &Lanes,
 ) {
-    if now.manner.effect == Effect::TensionLost {
+    if now.options.effect == Effect::TensionLost {
         lose_tension(point, now, bulk_modulus);
         return;
     }
     for k in 0..LANES {
-        let taken = now.manner.taken(point.damage[k]);
+        let taken = now.options.taken(point.damage[k]);
         if taken <= 0.0 {
             continue;
         }
-        let had = now.manner.taken(before[k]);
+        let had = now.options.taken(before[k]);
         let s = &mut point.deviatoric_stress;
         let p = point.pressure[k];
         if had < taken {

@@ -57,7 +57,7 @@ impl Molten {
 
 /// What the laws of failure of a material have in common.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Manner {
+pub struct FailureOptions {
     /// What failed matter has lost.
     pub effect: Effect,
     /// Energy that opens a crack, `G_f` (J/m²): from its strength on, matter softens until it has
@@ -73,9 +73,9 @@ pub struct Manner {
     pub dimension: u8,
 }
 
-impl Manner {
+impl FailureOptions {
     /// That of a material whose case says nothing else.
-    pub const USUAL: Self = Self {
+    pub const DEFAULT: Self = Self {
         effect: Effect::StrengthLost,
         fracture_energy: 0.0,
         scatter: 0.0,
@@ -84,7 +84,7 @@ impl Manner {
         dimension: 3,
     };
 
-    /// Whether matter that has reached its strength softens before it has failed.
+    /// True if matter that has reached its strength softens before it has failed.
     #[inline(always)]
     #[must_use]
     pub fn softens(&self) -> bool {
@@ -119,10 +119,10 @@ impl Manner {
 
     /// What differs from the usual, by the keys of the input.
     pub(super) fn constants(&self) -> Constants {
-        let usual = Self::USUAL;
+        let default = Self::DEFAULT;
         let rows = [
             (
-                self.effect != usual.effect,
+                self.effect != default.effect,
                 ("effect", Value::Word(self.effect.name())),
             ),
             (
@@ -137,22 +137,22 @@ impl Manner {
                 ("scatter", Value::Number(self.scatter, "")),
             ),
             (
-                self.seed != usual.seed,
+                self.seed != default.seed,
                 ("seed", Value::Number(f64::from(self.seed), "")),
             ),
             (
-                self.molten != usual.molten,
+                self.molten != default.molten,
                 ("molten", Value::Word(self.molten.name())),
             ),
         ];
-        let told = rows.into_iter().filter(|(differs, _)| *differs);
-        told.map(|(_, row)| row).collect()
+        let given = rows.into_iter().filter(|(differs, _)| *differs);
+        given.map(|(_, row)| row).collect()
     }
 }
 
-impl Default for Manner {
+impl Default for FailureOptions {
     fn default() -> Self {
-        Self::USUAL
+        Self::DEFAULT
     }
 }
 
@@ -167,14 +167,14 @@ macro_rules! failure_laws {
         pub struct Failure {
             $( $(#[doc = $doc])+ pub $key: Option<$law>, )+
             /// What these have in common.
-            pub manner: Manner,
+            pub options: FailureOptions,
         }
 
         impl Failure {
             /// Never.
-            pub const NONE: Self = Self { $( $key: None, )+ manner: Manner::USUAL };
+            pub const NONE: Self = Self { $( $key: None, )+ options: FailureOptions::DEFAULT };
 
-            /// Whether the material never fails.
+            /// True if the material never fails.
             #[must_use]
             pub fn is_none(&self) -> bool {
                 true $( && self.$key.is_none() )+
@@ -187,26 +187,26 @@ macro_rules! failure_laws {
                 laws.into_iter().flatten().chain(own).copied()
             }
 
-            /// Whether a law changes the state, so that what has failed stays so.
+            /// True if a law changes the state, so that what has failed stays so.
             #[must_use]
             pub fn has_memory(&self) -> bool {
                 self.state().next().is_some()
             }
 
-            /// Whether a law asks who and how large a particle is.
+            /// True if a law asks who and how large a particle is.
             #[must_use]
             pub fn asks_identity(&self) -> bool {
-                self.manner.softens() || self.manner.scatter > 0.0
+                self.options.softens() || self.options.scatter > 0.0
                     $( || $law::ASKS_IDENTITY && self.$key.is_some() )+
             }
 
-            /// Whether a law follows the temperature.
+            /// True if a law follows the temperature.
             #[must_use]
             pub fn needs_temperature(&self) -> bool {
                 false $( || self.$key.is_some_and(|law| law.needs_temperature()) )+
             }
 
-            /// Whether a law needs the melting temperature of the thermal constants.
+            /// True if a law needs the melting temperature of the thermal constants.
             #[must_use]
             pub fn needs_melting(&self) -> bool {
                 false $( || $law::NEEDS_MELTING && self.$key.is_some_and(|law| law.needs_temperature()) )+
@@ -218,12 +218,12 @@ macro_rules! failure_laws {
             pub fn constants(&self) -> Vec<(&'static str, $crate::Constants)> {
                 let laws = [$( self.$key.map(|law| (stringify!($key), law.constants())), )+];
                 let laws = laws.into_iter().flatten();
-                laws.chain([("", self.manner.constants())]).collect()
+                laws.chain([("", self.options.constants())]).collect()
             }
 
-            /// Whether matter softens from an onset on.
+            /// True if matter softens from an onset on.
             fn has_onset(&self) -> bool {
-                self.manner.softens()
+                self.options.softens()
                     && (false $( || $law::HAS_ONSET && self.$key.is_some_and(|law| law.follows_state()) )+)
             }
 
@@ -235,12 +235,12 @@ macro_rules! failure_laws {
             /// Stage 1.
             #[inline(always)]
             pub(in crate) fn limit_tension(&self, point: &mut PointBatch) {
-                let softens = self.manner.softens();
+                let softens = self.options.softens();
                 $( if let Some(law) = &self.$key {
                     law.limit_tension(point, softens);
                 } )+
                 if self.follows_state() {
-                    damage::limit_tension(point, &self.manner);
+                    damage::limit_tension(point, &self.options);
                 }
             }
 
@@ -265,7 +265,7 @@ macro_rules! failure_laws {
             ) {
                 let before = point.damage;
                 if now.dt != 0.0 {
-                    let softens = self.manner.softens();
+                    let softens = self.options.softens();
                     if softens {
                         std::mem::swap(&mut point.damage, &mut point.failure_onset);
                     }

@@ -176,7 +176,7 @@ impl Law for GradyKipp {
                 continue;
             }
             let size = now.size(point, k);
-            let (scale, seed) = (self.k * size * size * size, now.manner.seed);
+            let (scale, seed) = (self.k * size * size * size, now.options.seed);
             self.begin(point, k, scale, seed);
             // The weakest flaw is active as long as the strain is that of it.
             let first = point.first_flaw[k];

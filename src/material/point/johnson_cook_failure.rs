@@ -149,7 +149,7 @@ impl Law for JohnsonCookFailure {
                 let stress = [point.pressure[k], equivalent_stress(point, k)];
                 let rate = increment / now.dt;
                 let strain = self.failure_strain(stress, rate, now.temperature[k], &now.thermal);
-                point.damage[k] += increment / (strain * now.manner.strain_factor(point.id[k]));
+                point.damage[k] += increment / (strain * now.options.strain_factor(point.id[k]));
             }
         }
     }

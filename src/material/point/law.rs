@@ -1,6 +1,6 @@
 //! What a law of the material point is, and how those of a material act together.
 
-use super::failure::Manner;
+use super::failure::FailureOptions;
 use super::{LANES, Lanes, PointBatch};
 use crate::ThermalConstants;
 use crate::declare::Listed;
@@ -28,25 +28,25 @@ pub struct Contradiction {
 /// Damage of one is failure, whichever law has brought it. At the end of stage 5 of the same step
 /// failed matter lets go of tension and shear; in all later ones it has no tension after stage 1,
 /// and neither shear modulus nor flow stress after stage 2. What damage takes before, and what
-/// failed matter keeps, is the [`Manner`] of failure of the material. At last the
+/// failed matter keeps, is the [`FailureOptions`] of failure of the material. At last the
 /// sound speed follows. With a step of zero no stage may change the state.
 pub trait Law: Listed {
     /// Fields of the point that the law changes.
     const STATE: &'static [&'static str];
-    /// Whether the law follows the temperature.
+    /// True if the law follows the temperature.
     const NEEDS_TEMPERATURE: bool = false;
-    /// Whether the law needs the melting temperature of the thermal constants.
+    /// True if the law needs the melting temperature of the thermal constants.
     const NEEDS_MELTING: bool = false;
-    /// Whether what the law does follows density, temperature or damage. Such laws act in a
+    /// True if what the law does follows density, temperature or damage. Such laws act in a
     /// function of their own: inside that of the others they slow down those that have no need of
     /// them.
     const FOLLOWS_STATE: bool = false;
-    /// Whether matter that softens does so from an onset of this law on, and not while it is at a limit.
+    /// True if matter that softens does so from an onset of this law on, and not while it is at a limit.
     const HAS_ONSET: bool = true;
-    /// Whether the law asks who and how large a particle is.
+    /// True if the law asks who and how large a particle is.
     const ASKS_IDENTITY: bool = false;
 
-    /// Whether the law follows the temperature with these constants.
+    /// True if the law follows the temperature with these constants.
     fn needs_temperature(&self) -> bool {
         Self::NEEDS_TEMPERATURE
     }
@@ -56,7 +56,7 @@ pub trait Law: Listed {
         Self::STATE
     }
 
-    /// Whether what the law does follows the state with these constants.
+    /// True if what the law does follows the state with these constants.
     #[inline(always)]
     fn follows_state(&self) -> bool {
         Self::FOLLOWS_STATE
@@ -129,7 +129,7 @@ pub struct Conditions {
     /// Equivalent plastic strain of the step.
     pub plastic_increment: Lanes,
     /// How the material fails.
-    pub manner: Manner,
+    pub options: FailureOptions,
 }
 
 impl Conditions {
@@ -152,7 +152,7 @@ impl Conditions {
             bulk_modulus,
             kept: [1.0; LANES],
             plastic_increment: [0.0; LANES],
-            manner: Manner::USUAL,
+            options: FailureOptions::DEFAULT,
         }
     }
 
@@ -161,7 +161,7 @@ impl Conditions {
     #[inline(always)]
     pub(super) fn size(&self, point: &PointBatch, k: usize) -> f64 {
         let filled = point.mass[k] / self.reference_density;
-        match self.manner.dimension {
+        match self.options.dimension {
             1 => filled,
             2 => filled.sqrt(),
             _ => libm::cbrt(filled),
@@ -200,7 +200,7 @@ macro_rules! strength_laws {
                 }
             }
 
-            /// Whether the law follows the temperature.
+            /// True if the law follows the temperature.
             #[must_use]
             pub fn needs_temperature(&self) -> bool {
                 match self {
@@ -209,7 +209,7 @@ macro_rules! strength_laws {
                 }
             }
 
-            /// Whether the law needs the melting temperature of the thermal constants.
+            /// True if the law needs the melting temperature of the thermal constants.
             #[must_use]
             pub fn needs_melting(&self) -> bool {
                 match self {
@@ -227,7 +227,7 @@ macro_rules! strength_laws {
                 }
             }
 
-            /// Whether the material yields.
+            /// True if the material yields.
             #[must_use]
             pub fn yields(&self) -> bool {
                 self.state().contains(&"plastic_strain")
@@ -313,19 +313,19 @@ mod tests {
 
     /// One law of failure after the other, and softening.
     fn failures() -> Vec<Failure> {
-        let usual = Failure::NONE;
+        let default = Failure::NONE;
         let spall = |after| Failure {
             spall: Some(Spall {
                 pressure: -1e6,
                 after,
             }),
-            ..usual
+            ..default
         };
         let mut softens = spall(AfterSpall::Failed);
-        softens.manner.fracture_energy = 1e5;
-        softens.manner.effect = Effect::Scaled;
-        let mut cracks = usual;
-        cracks.manner.effect = Effect::Scaled;
+        softens.options.fracture_energy = 1e5;
+        softens.options.effect = Effect::Scaled;
+        let mut cracks = default;
+        cracks.options.effect = Effect::Scaled;
         cracks.grady_kipp = Some(GradyKipp {
             k: 1e20,
             m: 2.0,
@@ -341,7 +341,7 @@ mod tests {
             cracks,
             Failure {
                 principal_stress: Some(PrincipalStress { limit: 1e5 }),
-                ..usual
+                ..default
             },
         ]
     }

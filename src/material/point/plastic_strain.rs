@@ -20,7 +20,7 @@ impl Law for PlasticStrain {
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
             if now.plastic_increment[k] > 0.0 {
-                let limit = self.limit * now.manner.strain_factor(point.id[k]);
+                let limit = self.limit * now.options.strain_factor(point.id[k]);
                 point.damage[k] = at_least(point.damage[k], point.plastic_strain[k] / limit);
             }
         }

@@ -4,7 +4,7 @@ use super::PointBatch;
 use super::radial_return::equivalent_stress;
 use numerics::principal::principal;
 
-/// Whether the largest principal stress of lane `k` can exceed a limit (Pa): it lies at most two
+/// True if the largest principal stress of lane `k` can exceed a limit (Pa): it lies at most two
 /// thirds of the equivalent stress above the mean.
 #[inline(always)]
 pub(super) fn may_exceed(point: &PointBatch, k: usize, limit: f64) -> bool {

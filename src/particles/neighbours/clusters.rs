@@ -49,9 +49,9 @@ pub struct Lengths {
     /// Range of lists over the sum of both smoothing lengths: more than one for self-contact of
     /// unequal particles, which has no least range.
     pub stretch: f64,
-    /// Whether all its images have that length.
+    /// True if all its images have that length.
     pub uniform: bool,
-    /// Whether it is a rigid body, whose particles need no neighbours of their own.
+    /// True if it is a rigid body, whose particles need no neighbours of their own.
     pub rigid: bool,
 }
 

@@ -13,12 +13,12 @@ pub struct ImageFacts {
     pub smoothing_length: f64,
 }
 
-/// Whether there is anything to sum around an image.
+/// True if there is anything to sum around an image.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ImageState {
-    /// Whether its velocity is another than the one common to its group at rest in itself.
+    /// True if its velocity is another than the one common to its group at rest in itself.
     pub moving: bool,
-    /// Whether nothing changes it as long as nothing moves around it, as far as this rank knows.
+    /// True if nothing changes it as long as nothing moves around it, as far as this rank knows.
     pub resting: bool,
 }
 

@@ -7,21 +7,21 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
-use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::near::{INFLATION, near_box, push_places, splat_each};
 use super::pairs::PairList;
 use super::sequence::{Eight, Sequence};
+use super::size_classes::SizeClasses;
 use model::ContactClass;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::lanes::{F64x8, LANES, Lanes};
 
-/// For each ordered pair of kinds of particles, the mode of contact and its range.
+/// For each ordered pair of size classes of particles, the mode of contact and its range.
 #[derive(Debug, Clone)]
 pub struct ForeignTable {
-    /// The kinds.
-    pub kinds: Kinds,
-    /// `class[a * kinds + b]`; none where there is nothing beyond the SPH sums.
+    /// The size classes.
+    pub size_classes: SizeClasses,
+    /// `class[a * size_classes + b]`; none where there is nothing beyond the SPH sums.
     pub class: Vec<Option<ContactClass>>,
     /// Squared range of contact (m²), in the same order.
     pub reach2: Vec<f64>,
@@ -50,9 +50,9 @@ struct Candidates {
     indices: Vec<u32>,
     /// How many of these there are.
     used: usize,
-    kinds: Vec<usize>,
+    size_classes: Vec<usize>,
     positions: Vec<[F64x8; 3]>,
-    /// Squared range (m²) of receivers of the kind `reached_by`; zero where an eight is not full.
+    /// Squared range (m²) of receivers of the size class `reached_by`; zero where an eight is not full.
     reach2: Vec<F64x8>,
     reached_by: Option<usize>,
 }
@@ -64,7 +64,7 @@ pub struct ForeignLists {
 }
 
 impl ForeignLists {
-    /// Lists the foreign neighbours of all receivers of `clusters`. `kind_of` tells the kind of
+    /// Lists the foreign neighbours of all receivers of `clusters`. `size_class_of` tells the size class of
     /// an image by its place in the sequence.
     pub fn build(
         &mut self,
@@ -72,7 +72,7 @@ impl ForeignLists {
         sequence: &Sequence,
         sources: &[MotionRecord],
         table: &ForeignTable,
-        kind_of: impl Fn(u32) -> usize + Sync,
+        size_class_of: impl Fn(u32) -> usize + Sync,
     ) {
         self.chunks
             .resize_with(clusters.chunks().len(), ForeignChunk::default);
@@ -88,7 +88,7 @@ impl ForeignLists {
                     sequence,
                     sources,
                     table,
-                    kind_of: &kind_of,
+                    size_class_of: &size_class_of,
                 });
             });
     }
@@ -114,7 +114,7 @@ struct Find<'a, B> {
     sequence: &'a Sequence,
     sources: &'a [MotionRecord],
     table: &'a ForeignTable,
-    kind_of: &'a B,
+    size_class_of: &'a B,
 }
 
 impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
@@ -135,15 +135,15 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
             if near.used == 0 && strangers.peek().is_none() {
                 continue;
             }
-            near.look_up(self.sources, self.kind_of);
+            near.look_up(self.sources, self.size_class_of);
             for &receiver in &cluster.receivers[..cluster.lanes] {
                 let here = Receiver {
                     position: &self.sources[receiver as usize].position,
-                    kind: (self.kind_of)(receiver),
+                    size_class: (self.size_class_of)(receiver),
                 };
                 if let Some((_, list)) = strangers.next_if(|(at, _)| *at == receiver) {
                     apart.take(list);
-                    apart.look_up(self.sources, self.kind_of);
+                    apart.look_up(self.sources, self.size_class_of);
                     chunk.add_near::<V>(&here, &mut apart, self.table);
                 }
                 chunk.add_near::<V>(&here, &mut near, self.table);
@@ -156,7 +156,7 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
 
 struct Receiver<'a> {
     position: &'a [f64; 3],
-    kind: usize,
+    size_class: usize,
 }
 
 impl Candidates {
@@ -219,13 +219,13 @@ impl Candidates {
         self.used = list.len();
     }
 
-    /// Positions and kinds of what is listed.
+    /// Positions and size classes of what is listed.
     #[inline(always)]
-    fn look_up(&mut self, sources: &[MotionRecord], kind_of: &impl Fn(u32) -> usize) {
+    fn look_up(&mut self, sources: &[MotionRecord], size_class_of: &impl Fn(u32) -> usize) {
         let indices = &self.indices[..self.used];
-        self.kinds.clear();
-        self.kinds
-            .extend(indices.iter().map(|&index| kind_of(index)));
+        self.size_classes.clear();
+        self.size_classes
+            .extend(indices.iter().map(|&index| size_class_of(index)));
         self.positions.clear();
         self.positions.extend(indices.chunks(LANES).map(|eight| {
             let mut positions = [F64x8([0.0; LANES]); 3];
@@ -240,22 +240,23 @@ impl Candidates {
         self.reached_by = None;
     }
 
-    /// Ranges for receivers of a kind.
+    /// Ranges for receivers of a size class.
     #[inline(always)]
-    fn reach(&mut self, kind: usize, table: &ForeignTable) {
-        if self.reached_by == Some(kind) {
+    fn reach(&mut self, size_class: usize, table: &ForeignTable) {
+        if self.reached_by == Some(size_class) {
             return;
         }
-        self.reached_by = Some(kind);
-        let row = kind * table.kinds.count();
+        self.reached_by = Some(size_class);
+        let row = size_class * table.size_classes.count();
         self.reach2.clear();
-        self.reach2.extend(self.kinds.chunks(LANES).map(|eight| {
-            let mut reach2 = F64x8([0.0; LANES]);
-            for (reach2, other) in reach2.0.iter_mut().zip(eight) {
-                *reach2 = table.reach2[row + other];
-            }
-            reach2
-        }));
+        self.reach2
+            .extend(self.size_classes.chunks(LANES).map(|eight| {
+                let mut reach2 = F64x8([0.0; LANES]);
+                for (reach2, other) in reach2.0.iter_mut().zip(eight) {
+                    *reach2 = table.reach2[row + other];
+                }
+                reach2
+            }));
     }
 }
 
@@ -280,8 +281,8 @@ impl ForeignChunk {
         candidates: &mut Candidates,
         table: &ForeignTable,
     ) {
-        candidates.reach(receiver.kind, table);
-        let classes = &table.class[receiver.kind * table.kinds.count()..];
+        candidates.reach(receiver.size_class, table);
+        let classes = &table.class[receiver.size_class * table.size_classes.count()..];
         let here = splat_each::<V>(*receiver.position);
         let eights = candidates.positions.iter().zip(&candidates.reach2);
         for (n, (positions, reach2)) in eights.enumerate() {
@@ -293,7 +294,7 @@ impl ForeignChunk {
                 let k = n * LANES + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
                 let index = candidates.indices[k];
-                if let Some(class) = classes[candidates.kinds[k]] {
+                if let Some(class) = classes[candidates.size_classes[k]] {
                     self.lists[class as usize].sources.push(index);
                 }
             }

@@ -13,7 +13,7 @@ pub struct Fragment {
     /// Smallest id of its particles.
     pub label: u64,
     /// Code of the symmetry planes behind which the image stands and that do not cut the fragment.
-    pub code: u64,
+    pub mirror_mask: u64,
 }
 
 /// What tells particles of one fragment from strangers.
@@ -27,7 +27,7 @@ pub struct Membership<'a> {
 }
 
 impl Membership<'_> {
-    /// Whether two images belong together.
+    /// True if two images belong together.
     #[must_use]
     pub fn own(&self, a: u32, b: u32) -> bool {
         self.fragments[a as usize] == self.fragments[b as usize] && self.near(a, b)
@@ -42,7 +42,7 @@ impl Membership<'_> {
         r[0] * r[0] + r[1] * r[1] + r[2] * r[2] <= 1.0
     }
 
-    /// Whether all of a cluster belong together with all of its neighbours.
+    /// True if all of a cluster belong together with all of its neighbours.
     fn one(&self, cluster: &Cluster, neighbours: &[u32]) -> bool {
         let receivers = &cluster.receivers[..cluster.lanes];
         let fragment = self.fragments[receivers[0] as usize];
@@ -55,7 +55,7 @@ impl Membership<'_> {
                     .all(|&i| neighbours.iter().all(|&j| self.near(i, j))))
     }
 
-    /// Whether two receivers have the same strangers among `neighbours`.
+    /// True if two receivers have the same strangers among `neighbours`.
     fn agree(&self, a: u32, b: u32, neighbours: &[u32]) -> bool {
         self.fragments[a as usize] == self.fragments[b as usize]
             && (self.references.is_empty()

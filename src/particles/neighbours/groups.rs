@@ -8,7 +8,7 @@ use model::{Case, ContactMode, SphForm};
 pub struct Groups {
     /// Group of each body.
     pub of_body: Vec<usize>,
-    /// Whether a group is a rigid body.
+    /// True if a group is a rigid body.
     pub rigid: Vec<bool>,
     /// How many groups the bodies form.
     pub of_bodies: usize,

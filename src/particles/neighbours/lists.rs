@@ -8,9 +8,9 @@ use super::facts::{ImageFacts, ImageState};
 use super::foreign::{ForeignChunk, ForeignLists, ForeignTable};
 use super::fragments::Membership;
 use super::groups::Groups;
-use super::kinds::Kinds;
 use super::motion::MotionRecord;
 use super::sequence::Sequence;
+use super::size_classes::SizeClasses;
 use crate::Mirrors;
 use crate::{Active, ActiveMut, GRAIN, HaloImages, Image, ParticleStore, Scatter, resize};
 use model::{Body, Case, SmoothingLength};
@@ -25,7 +25,7 @@ pub struct Lists {
     /// Spare the sums of what moves alike without stress; off to test that no bit changes, and to
     /// time the sums.
     pub spare_quiescent: bool,
-    /// Whether the store is to be put in order.
+    /// True if the store is to be put in order.
     pub is_order_due: bool,
     sequence: Sequence,
     motion: Vec<MotionRecord>,
@@ -33,7 +33,7 @@ pub struct Lists {
     foreign: ForeignLists,
     /// Smoothing lengths of each group.
     lengths: Vec<Lengths>,
-    /// Whether smoothing lengths change.
+    /// True if smoothing lengths change.
     is_variable: bool,
     /// Velocity of each group's first body at the start (m/s): where all move so and there is no
     /// stress, sums are zero to the bit and need not be made.
@@ -113,7 +113,7 @@ impl Lists {
         self.foreign.chunks()
     }
 
-    /// Whether two images of a group are within each other's support.
+    /// True if two images of a group are within each other's support.
     #[must_use]
     pub fn in_support(&self, group: usize, i: u32, j: u32) -> bool {
         let [a, b] = [i, j].map(|index| &self.motion[index as usize].position);
@@ -155,7 +155,7 @@ impl Lists {
         ranges.fold(0.0, f64::max)
     }
 
-    /// Whether the particles of a group have no velocity where it is at rest in itself.
+    /// True if the particles of a group have no velocity where it is at rest in itself.
     #[must_use]
     pub fn is_still(&self, group: usize) -> bool {
         self.common_velocity[group] == [0.0; 3]
@@ -209,14 +209,14 @@ impl Lists {
         let (spare, common) = (self.spare_quiescent, &self.common_velocity);
         resize(&mut self.motion, active.count() + others.len());
         let motion = Scatter::new(&mut self.motion);
-        let group_of = |base: usize| group_of(groups, particles, base);
+        let group_of = |slot: usize| group_of(groups, particles, slot);
         let facts = |image: Image| {
-            let (base, code) = (image.base(), image.code());
+            let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
             ImageFacts {
-                position: mirrors.reflect_position(&particles.position[base], code),
-                id: particles.id[base],
-                group: group_of(base),
-                smoothing_length: particles.smoothing_length[base],
+                position: mirrors.reflect_position(&particles.position[slot], mirror_mask),
+                id: particles.id[slot],
+                group: group_of(slot),
+                smoothing_length: particles.smoothing_length[slot],
             }
         };
         let scratch = bytemuck::cast_slice_mut(scratch);
@@ -227,19 +227,22 @@ impl Lists {
             (others, halo.below),
             facts,
             |index, image| {
-                let (base, code) = (image.base(), image.code());
+                let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
                 let record = MotionRecord {
-                    position: mirrors.reflect_position(&particles.position[base], code),
-                    velocity: Mirrors::reflect_vector(&particles.predicted_velocity[base], code),
-                    volume: particles.mass[base] / particles.predicted_density[base],
-                    mass: particles.mass[base],
+                    position: mirrors.reflect_position(&particles.position[slot], mirror_mask),
+                    velocity: Mirrors::reflect_vector(
+                        &particles.predicted_velocity[slot],
+                        mirror_mask,
+                    ),
+                    volume: particles.mass[slot] / particles.predicted_density[slot],
+                    mass: particles.mass[slot],
                 };
                 // SAFETY: each place is emitted once.
                 unsafe { *motion.slot(index) = record };
-                let moving = !spare || record.velocity != common[group_of(base)];
+                let moving = !spare || record.velocity != common[group_of(slot)];
                 ImageState {
                     moving,
-                    resting: !moving && base < owned && rests(image),
+                    resting: !moving && slot < owned && rests(image),
                 }
             },
         );
@@ -282,9 +285,9 @@ impl Lists {
             &self.motion,
             table,
             |index| {
-                let base = images[index as usize].base();
-                let body = particles.body[base] as usize;
-                table.kinds.of(body, particles.mass[base])
+                let slot = images[index as usize].slot();
+                let body = particles.body[slot] as usize;
+                table.size_classes.of(body, particles.mass[slot])
             },
         );
     }
@@ -303,13 +306,13 @@ impl Lists {
         } = active;
         let (owned, images) = (particles.owned(), self.sequence.images());
         let own = |image: &Image| {
-            image.code() == 0 && image.base() < owned && !inactive.holds(image.base())
+            image.mirror_mask() == 0 && image.slot() < owned && !inactive.holds(image.slot())
         };
         self.order.clear();
         let all = (images.len(), GRAIN);
         self.collector.extend(&mut self.order, all, |index| {
             #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-            let place = |image: Image| image.base() as u32;
+            let place = |image: Image| image.slot() as u32;
             Some(images[index]).filter(own).map(place)
         });
         let active = inactive.count_active(owned);
@@ -343,9 +346,9 @@ impl Lists {
 
 /// The group of a particle: stress points have groups of their own.
 #[inline(always)]
-fn group_of(groups: &Groups, particles: &ParticleStore, base: usize) -> usize {
-    let group = groups.of_body[particles.body[base] as usize];
-    let stress_mass = particles.stress_mass.get(base);
+fn group_of(groups: &Groups, particles: &ParticleStore, slot: usize) -> usize {
+    let group = groups.of_body[particles.body[slot] as usize];
+    let stress_mass = particles.stress_mass.get(slot);
     if stress_mass.is_some_and(|&mass| mass > 0.0) {
         group + groups.of_bodies
     } else {
@@ -372,7 +375,7 @@ fn group_lengths(case: &Case, groups: &Groups) -> Vec<Lengths> {
                     0.0
                 },
                 stretch: if case.self_contact.is_some() && uneven {
-                    Kinds::longest_range(case)
+                    SizeClasses::longest_range(case)
                 } else {
                     1.0
                 },

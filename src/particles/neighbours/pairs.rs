@@ -21,7 +21,7 @@ impl PairList {
         })
     }
 
-    /// Whether no receiver has a neighbour.
+    /// True if no receiver has a neighbour.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.receivers.is_empty()

@@ -2,7 +2,7 @@
 //!
 //! Owned, halo and mirror particles merge into one sorted sequence for each group of bodies.
 //! Each receiver meets its neighbours in the order of (cell across, position along the column, id, image
-//! code): a pure function of the images themselves, so it is the same on any ranks.
+//! mirror mask): a pure function of the images themselves, so it is the same on any ranks.
 
 use std::ops::Range;
 
@@ -162,7 +162,7 @@ impl Sequence {
         })
     }
 
-    /// Whether any of eight places from one on holds an image or a halo particle; those beyond
+    /// True if any of eight places from one on holds an image or a halo particle; those beyond
     /// the last image may say so too.
     ///
     /// # Panics
@@ -176,13 +176,13 @@ impl Sequence {
         u64::from_le_bytes(eight) & u64::from_le_bytes([IMAGE; LANES]) != 0
     }
 
-    /// Whether the image at an index rests, at the velocity common to its group.
+    /// True if the image at an index rests, at the velocity common to its group.
     #[inline(always)]
     pub(super) fn rests(&self, index: usize) -> bool {
         self.special[index] & (MOVING | ACTIVE) == 0
     }
 
-    /// Whether the image at an index is a particle of this rank itself.
+    /// True if the image at an index is a particle of this rank itself.
     #[inline(always)]
     pub(super) fn is_owned(&self, index: usize) -> bool {
         self.special[index] & IMAGE == 0
@@ -206,7 +206,7 @@ impl Sequence {
         &self.special
     }
 
-    /// Whether all are particles of this rank themselves.
+    /// True if all are particles of this rank themselves.
     #[must_use]
     pub fn is_alone(&self) -> bool {
         self.others == 0
@@ -332,7 +332,7 @@ impl Sequence {
         [0, 1, 2].map(|a| self.coordinates[a][index])
     }
 
-    /// What the canonical order of a group goes by before ids and image codes: the column of an image, and
+    /// What the canonical order of a group goes by before ids and image mirror masks: the column of an image, and
     /// where it is along that.
     #[must_use]
     pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {

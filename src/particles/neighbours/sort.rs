@@ -52,7 +52,7 @@ impl Entry {
         self.along
             .cmp(&other.along)
             .then_with(|| self.id.cmp(&other.id))
-            .then_with(|| self.image.code().cmp(&other.image.code()))
+            .then_with(|| self.image.mirror_mask().cmp(&other.image.mirror_mask()))
     }
 
     #[inline(always)]
@@ -285,8 +285,8 @@ pub(super) struct Targets<'a> {
 impl Targets<'_> {
     #[inline(always)]
     fn write(&self, index: usize, image: Image, facts: &ImageFacts, state: ImageState) {
-        let mirror = if image.code() == 0 { 0 } else { MIRROR };
-        let halo = if image.base() < self.owned { 0 } else { HALO };
+        let mirror = if image.mirror_mask() == 0 { 0 } else { MIRROR };
+        let halo = if image.slot() < self.owned { 0 } else { HALO };
         // SAFETY: each place belongs to one column, and one thread has that column.
         unsafe {
             *self.images.slot(index) = image;

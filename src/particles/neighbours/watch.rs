@@ -22,7 +22,7 @@ pub(super) struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Whether all clusters of a run rest among what rests, far from other groups. May say no where they do. What moves
+    /// True if all clusters of a run rest among what rests, far from other groups. May say no where they do. What moves
     /// counts as far as it reaches a neighbour, which it strains before the sums of forces; and so does contact, whose stress
     /// is shown around a neighbour.
     #[inline(always)]
@@ -54,7 +54,7 @@ impl Watch<'_> {
         range.copied().unwrap_or_default() * INFLATION
     }
 
-    /// Whether all images of the own group near a box (m), by no more than `far` (m) along each axis, rest and belong
+    /// True if all images of the own group near a box (m), by no more than `far` (m) along each axis, rest and belong
     /// to this rank.
     #[inline(always)]
     fn rests_near<V: Lanes>(&mut self, (lower, upper): (&[f64; 3], &[f64; 3]), far: f64) -> bool {
@@ -79,7 +79,7 @@ impl Watch<'_> {
         marks == 0
     }
 
-    /// Whether no image of a group is near a box (m), by no more than `far` (m) along each axis.
+    /// True if no image of a group is near a box (m), by no more than `far` (m) along each axis.
     #[inline(always)]
     fn is_far<V: Lanes>(
         &self,

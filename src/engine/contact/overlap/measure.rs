@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::constants;
-use crate::contact::mode::{Found, Scene, fill, for_each_chunk};
-use crate::contact::view::{ContactView, Party, Separation};
+use crate::contact::mode::{MeasuredChunks, Scene, fill, for_each_chunk};
+use crate::contact::view::{ContactParticle, ContactView, Separation};
 use model::{ContactClass, Overlap};
 use numerics::vector::norm;
 use particles::Scatter;
@@ -59,18 +59,18 @@ pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
 
 /// Current volume (m³) of the matter of an image, without the voids in it.
 #[inline(always)]
-fn matter(view: &ContactView, index: u32, party: &Party) -> f64 {
-    let most = party.volume * view.table.expansion(party.body);
+fn matter(view: &ContactView, index: u32, particle: &ContactParticle) -> f64 {
+    let most = particle.volume * view.table.expansion(particle.body);
     view.motion[index as usize].volume.min(most)
 }
 
 /// Sums the foreign fraction of the receiver at `index`, whose initial overlap offset is `offset`.
 #[must_use]
 pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64) -> Fraction {
-    let i = view.party(index);
+    let i = view.particle(index);
     let mut sum = Fraction::default();
     for &other in neighbours {
-        let j = view.party(other);
+        let j = view.particle(other);
         let (pair, own) = constants(view, &i, &j);
         let separation = Separation::between(&i, &j);
         let kernel = pair.kernel.value(separation.distance);
@@ -93,10 +93,10 @@ pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64)
 /// The particle that sees a face knows the normal; one of a face that sees a lone particle does
 /// not.
 fn normal(view: &ContactView, index: u32, neighbours: &[u32], fraction: &Fraction) -> [f64; 3] {
-    let i = view.party(index);
+    let i = view.particle(index);
     let mut sum = [0.0; 3];
     for &other in neighbours {
-        let j = view.party(other);
+        let j = view.particle(other);
         let separation = Separation::between(&i, &j);
         let slope = -constants(view, &i, &j).0.kernel.slope(separation.distance);
         let along = separation.along(j.volume * slope);
@@ -109,7 +109,7 @@ fn normal(view: &ContactView, index: u32, neighbours: &[u32], fraction: &Fractio
 }
 
 /// Measures the receivers of all chunks.
-pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
+pub(super) fn weigh(found: &mut MeasuredChunks<Overlap>, scene: &Scene) {
     let friction = scene.table.has_friction();
     let view = scene.view();
     for_each_chunk(
@@ -118,7 +118,7 @@ pub(super) fn weigh(found: &mut Found<Overlap>, scene: &Scene) {
         ContactClass::Overlap,
         |found, list, own| {
             found.extend(list.iter().map(|(index, neighbours)| {
-                let particle = view.images[index as usize].base();
+                let particle = view.images[index as usize].slot();
                 let offset = view.particles.touch_relief[particle];
                 let fraction = fraction(&view, index, neighbours, offset);
                 let is_enclosed = fraction.current > ENCLOSED_FRACTION;
@@ -171,16 +171,20 @@ fn look_at_own(view: &ContactView, found: &mut [Measured], own: &Chunk) {
     }
 }
 
-/// Whether its own and foreign matter (the fraction `current`) together leave room for a particle: with half of itself
+/// True if its own and foreign matter (the fraction `current`) together leave room for a particle: with half of itself
 /// they fill its support at most once. A particle in a vacancy of a foreign lattice has room, one between
 /// sites has none.
 fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
-    let i = view.party(index);
+    let i = view.particle(index);
     let mut filled = current;
     for &other in own {
-        let j = view.party(other);
+        let j = view.particle(other);
         let distance = Separation::between(&i, &j).distance;
-        let kernel = view.table.pair(i.kind, j.kind).kernel.value(distance);
+        let kernel = view
+            .table
+            .pair(i.size_class, j.size_class)
+            .kernel
+            .value(distance);
         let share = matter(view, other, &j) * kernel;
         filled += if other == index { 0.5 * share } else { share };
         if filled > 1.0 {
@@ -193,7 +197,7 @@ fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
 /// `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over the neighbours in its own body: 0 where these fill half as much
 /// of its support as a body in touch does, 1 where there are none. Rigid bodies are not isolated.
 fn isolation(view: &ContactView, index: u32, own: &[u32], touching: f64) -> f64 {
-    let i = view.party(index);
+    let i = view.particle(index);
     let groups = &view.table.groups;
     if groups.rigid[groups.of_body[i.body]] {
         return 0.0;
@@ -202,9 +206,14 @@ fn isolation(view: &ContactView, index: u32, own: &[u32], touching: f64) -> f64 
     let mut left = half;
     for &other in own {
         if other != index {
-            let j = view.party(other);
+            let j = view.particle(other);
             let distance = Separation::between(&i, &j).distance;
-            left -= j.volume * view.table.pair(i.kind, j.kind).kernel.value(distance);
+            left -= j.volume
+                * view
+                    .table
+                    .pair(i.size_class, j.size_class)
+                    .kernel
+                    .value(distance);
             if left <= 0.0 {
                 return 0.0;
             }
@@ -214,7 +223,7 @@ fn isolation(view: &ContactView, index: u32, own: &[u32], touching: f64) -> f64 
 }
 
 /// Stores what has been measured; nothing of particles without foreign neighbours.
-pub(super) fn store(found: &Found<Overlap>, scene: &mut Scene) {
+pub(super) fn store(found: &MeasuredChunks<Overlap>, scene: &mut Scene) {
     let particles = &mut *scene.particles;
     // What else there is of a fraction nobody reads without excess.
     for field in [

@@ -1,6 +1,6 @@
 //! The outermost layer of a body, and its normals.
 
-use crate::contact::view::{ContactView, Party};
+use crate::contact::view::{ContactParticle, ContactView};
 use numerics::kernel::{Kernel, SUPPORT};
 use numerics::vector::{minus, norm};
 
@@ -71,8 +71,13 @@ impl Boundary {
 
 /// The outward normal of the receiver `i`, as long as it counts beside others, from the images of
 /// its own group; zero inside of the body.
-pub(super) fn normal(view: &ContactView, i: &Party, own: &[u32], known: &Boundary) -> [f64; 3] {
-    let pair = view.table.pair(i.kind, i.kind);
+pub(super) fn normal(
+    view: &ContactView,
+    i: &ContactParticle,
+    own: &[u32],
+    known: &Boundary,
+) -> [f64; 3] {
+    let pair = view.table.pair(i.size_class, i.size_class);
     let (mut outward, mut filled) = ([0.0; 3], 0.0);
     // B⁻¹; one on axes that the case does not have.
     let mut matrix = [[0.0; 3]; 3];

@@ -76,9 +76,9 @@ impl View<'_> {
         dt: f64,
     ) -> Option<SurfaceFriction> {
         let before = slip(self.particles, i);
-        let (kind, volume) = self.kind(i);
+        let (size_class, volume) = self.size_class(i);
         let of = |push: &Push| {
-            let penalty = self.penalties[push.surface][kind].as_ref();
+            let penalty = self.penalties[push.surface][size_class].as_ref();
             let law = penalty.map(|p| p.friction).filter(Law::is_any)?;
             let press = norm(&push.force);
             (press > 0.0).then_some((law, press))
@@ -124,9 +124,9 @@ impl View<'_> {
         if before.displacement == [0.0; 3] {
             return None;
         }
-        let (kind, volume) = self.kind(i);
+        let (size_class, volume) = self.size_class(i);
         let law = Law {
-            stiffness: self.sticks[kind] * volume,
+            stiffness: self.sticks[size_class] * volume,
             ..Law::default()
         };
         let friction = law.step(before, &[0.0; 3], &[0.0; 3], &before.rate, dt);

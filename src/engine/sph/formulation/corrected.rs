@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::domain::Shown;
+use crate::domain::Payload;
 use crate::sph::material_update::{Show, Updated};
 use crate::sph::shared::{Sums, scratch_of, show_images};
 use crate::sph::signal::{SignalSpeed, Signals};
@@ -31,7 +31,7 @@ pub struct Corrected {
     /// Where the records of this rank's particles stand.
     places: Vec<u32>,
     /// Those of halo particles.
-    heard: Vec<CorrectedRecord>,
+    received: Vec<CorrectedRecord>,
     /// Stiffness ξ of the hourglass control.
     hourglass: f64,
 }
@@ -59,11 +59,11 @@ impl Corrected {
         let places = Scatter::new(&mut self.places);
         let images = lists.images().par_iter().enumerate();
         images.with_min_len(GRAIN).for_each(|(place, image)| {
-            if image.code() == 0 && image.base() < owned {
+            if image.mirror_mask() == 0 && image.slot() < owned {
                 #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
                 let place = place as u32;
                 // SAFETY: each particle stands at one place.
-                unsafe { *places.slot(image.base()) = place };
+                unsafe { *places.slot(image.slot()) = place };
             }
         });
     }
@@ -96,19 +96,19 @@ impl Formulation for Corrected {
         lists: &Lists,
         side: Side,
     ) {
-        let (owned, places, heard) = (particles.owned(), &self.places, &self.heard);
+        let (owned, places, received) = (particles.owned(), &self.places, &self.received);
         show_images(
             &mut self.records,
             owned,
             lists,
             side,
-            |records, base, code| {
-                let shown = match base.checked_sub(owned) {
+            |records, slot, mirror_mask| {
+                let shown = match slot.checked_sub(owned) {
                     // SAFETY: images stand at other places, and nobody writes elsewhere.
-                    None => unsafe { records.read(places[base] as usize) },
-                    Some(k) => heard[k],
+                    None => unsafe { records.read(places[slot] as usize) },
+                    Some(k) => received[k],
                 };
-                reflected(&shown, code)
+                reflected(&shown, mirror_mask)
             },
         );
         sums.terms.show(particles, lists, side);
@@ -119,18 +119,18 @@ impl Formulation for Corrected {
         scratch_of(&mut self.records, images)
     }
 
-    fn shown(&mut self) -> Option<&mut dyn Shown> {
+    fn payload(&mut self) -> Option<&mut dyn Payload> {
         Some(self)
     }
 
     fn memory(&self) -> usize {
-        (self.records.capacity() + self.heard.capacity()) * size_of::<CorrectedRecord>()
+        (self.records.capacity() + self.received.capacity()) * size_of::<CorrectedRecord>()
             + 4 * self.places.capacity()
     }
 }
 
 /// Their records.
-impl Shown for Corrected {
+impl Payload for Corrected {
     fn size(&self) -> usize {
         size_of::<CorrectedRecord>()
     }
@@ -139,9 +139,9 @@ impl Shown for Corrected {
         bytemuck::bytes_of(&self.records[self.places[particle] as usize])
     }
 
-    fn heard(&mut self, halo: usize) -> &mut [u8] {
-        resize(&mut self.heard, halo);
-        bytemuck::cast_slice_mut(&mut self.heard)
+    fn received(&mut self, halo: usize) -> &mut [u8] {
+        resize(&mut self.received, halo);
+        bytemuck::cast_slice_mut(&mut self.received)
     }
 }
 
@@ -210,11 +210,11 @@ impl Gradient for CorrectedGradients<'_> {
     }
 }
 
-/// What the image `code` of a particle shows that shows this.
-fn reflected(record: &CorrectedRecord, code: u8) -> CorrectedRecord {
+/// What the image `mirror_mask` of a particle shows that shows this.
+fn reflected(record: &CorrectedRecord, mirror_mask: u8) -> CorrectedRecord {
     CorrectedRecord {
-        stress: Mirrors::reflect_tensor(&record.stress, code),
-        hourglass: Mirrors::reflect_vector(&record.hourglass, code),
+        stress: Mirrors::reflect_tensor(&record.stress, mirror_mask),
+        hourglass: Mirrors::reflect_vector(&record.hourglass, mirror_mask),
         ..*record
     }
 }
@@ -307,7 +307,7 @@ impl<S: PairScale> ShowCorrected<'_, S> {
     }
 }
 
-/// Whether no point bears stress.
+/// True if no point bears stress.
 #[inline(always)]
 fn is_free(after: &PointBatch) -> bool {
     after.pressure == [0.0; LANES] && after.deviatoric_stress == [[0.0; LANES]; 6]

@@ -60,7 +60,7 @@ impl Formulation for Normalised {
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
         records.with_min_len(GRAIN).for_each(|(shown, &image)| {
-            if side.takes(image.base() >= particles.owned()) {
+            if side.takes(image.slot() >= particles.owned()) {
                 *shown = record(particles, image);
             }
         });
@@ -116,7 +116,7 @@ impl Gradient for NormalisedGradients<'_> {
         };
         let corrected = sums.run::<V>();
         for (k, correction) in corrected.corrections[..cluster.lanes].iter().enumerate() {
-            let i = self.images[cluster.receivers[k] as usize].base();
+            let i = self.images[cluster.receivers[k] as usize].slot();
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
             unsafe {
                 *self.matrix.slot(i) = correction.matrix;
@@ -130,7 +130,7 @@ impl Gradient for NormalisedGradients<'_> {
 
 /// What an image shows of its stress and correction.
 fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
-    let (i, code) = (image.base(), image.code());
+    let (i, mirror_mask) = (image.slot(), image.mirror_mask());
     let own = NormalisedRecord::new(
         (particles.pressure[i], &particles.deviatoric_stress[i]),
         &particles.gradient_correction[i],
@@ -138,8 +138,8 @@ fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
         [particles.density[i], particles.sound_speed[i]],
     );
     NormalisedRecord {
-        stress: Mirrors::reflect_tensor(&own.stress, code),
-        shift: Mirrors::reflect_vector(&own.shift, code),
+        stress: Mirrors::reflect_tensor(&own.stress, mirror_mask),
+        shift: Mirrors::reflect_vector(&own.shift, mirror_mask),
         ..own
     }
 }

@@ -125,11 +125,11 @@ impl StressPoints {
         resize(&mut self.records, images.len());
         let points = self.records[first..].par_iter_mut().zip(&images[first..]);
         points.with_min_len(GRAIN).for_each(|(record, image)| {
-            let (i, code) = (image.base(), image.code());
+            let (i, mirror_mask) = (image.slot(), image.mirror_mask());
             if side.takes(i >= particles.owned()) {
                 *record = StressPointRecord {
-                    moment: Mirrors::reflect_tensor(&particles.stress_moment[i], code),
-                    offset: Mirrors::reflect_vector(&particles.stress_offset[i], code),
+                    moment: Mirrors::reflect_tensor(&particles.stress_moment[i], mirror_mask),
+                    offset: Mirrors::reflect_vector(&particles.stress_offset[i], mirror_mask),
                     density: particles.density[i],
                     heat: particles.stress_heat[i],
                 };

@@ -52,12 +52,18 @@ pub(super) fn fill_stresses(
     lists: &Lists,
     side: Side,
 ) {
-    show_images(records, particles.owned(), lists, side, |_, base, code| {
-        StressRecord::new(
-            particles.pressure[base],
-            &Mirrors::reflect_symmetric(&particles.deviatoric_stress[base], code),
-            particles.density[base],
-            particles.sound_speed[base],
-        )
-    });
+    show_images(
+        records,
+        particles.owned(),
+        lists,
+        side,
+        |_, slot, mirror_mask| {
+            StressRecord::new(
+                particles.pressure[slot],
+                &Mirrors::reflect_symmetric(&particles.deviatoric_stress[slot], mirror_mask),
+                particles.density[slot],
+                particles.sound_speed[slot],
+            )
+        },
+    );
 }

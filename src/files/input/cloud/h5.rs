@@ -9,7 +9,7 @@ use super::{Fault, Request, Table};
 use crate::output::h5::arrays::ArrayFile;
 use model::Quantity;
 
-/// Reads the arrays that the input names, and those of the first group that are called as usual.
+/// Reads the arrays that the input names, and those of the first group with the default names.
 ///
 /// # Errors
 /// What is wrong with the file, or with what is asked of it.
@@ -51,7 +51,7 @@ pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
 
 /// Names of the arrays that are read, of those that are there.
 fn wanted(there: &[String], request: &Request) -> Result<Vec<String>, Fault> {
-    let usual = |names: &[&str]| -> Vec<String> {
+    let default = |names: &[&str]| -> Vec<String> {
         let found = names.iter().filter(|name| has(there, name));
         found.map(|name| (*name).to_owned()).collect()
     };
@@ -60,12 +60,12 @@ fn wanted(there: &[String], request: &Request) -> Result<Vec<String>, Fault> {
         match request.columns.stated(quantity) {
             Some([name]) => wanted.push(name.clone()),
             Some(_) => return Err(Fault::of("columns", "an array has one name")),
-            None => wanted.extend(usual(of_array(quantity))),
+            None => wanted.extend(default(of_array(quantity))),
         }
     }
     match &request.columns.part {
         Some(name) => wanted.push(name.clone()),
-        None => wanted.extend(usual(&request.columns.part_names())),
+        None => wanted.extend(default(&request.columns.part_names())),
     }
     Ok(wanted)
 }

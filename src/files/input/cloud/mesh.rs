@@ -125,7 +125,7 @@ pub struct Part {
     pub cells: Vec<u32>,
     /// Particles.
     pub points: Vec<u32>,
-    /// Whether it is a set of what belongs to other parts too: nothing that a file is divided into.
+    /// True if it is a set of what belongs to other parts too: nothing that a file is divided into.
     pub is_set: bool,
 }
 

@@ -74,7 +74,7 @@ pub struct Fault {
     pub key: &'static str,
     /// What is wrong.
     pub words: String,
-    /// Whether there is no such file.
+    /// True if there is no such file.
     pub is_missing: bool,
 }
 

@@ -18,24 +18,24 @@ const CHUNK: usize = 1 << 20;
 /// # Errors
 /// What is wrong with the file, or with what is asked of it.
 pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
-    let file = SnapshotFile::open(path).map_err(told)?;
-    let dimension = file.number("/whipple", "dimension").map_err(told)?;
+    let file = SnapshotFile::open(path).map_err(read_fault)?;
+    let dimension = file.number("/whipple", "dimension").map_err(read_fault)?;
     if dimension != request.dimension as u64 {
         let d = request.dimension;
         return Err(format!("it is of a model of {dimension} dimensions, not {d}").into());
     }
-    if let Some(part) = file.portion().map_err(told)? {
+    if let Some(part) = file.portion().map_err(read_fault)? {
         let part = format!("it holds a part of the model alone ({part})");
         return Err(format!("{part}; give a snapshot of all particles").into());
     }
-    let bodies = file.attribute("/whipple", "bodies").map_err(told)?;
+    let bodies = file.attribute("/whipple", "bodies").map_err(read_fault)?;
     let bodies: Vec<String> = serde_json::from_str(&bodies)
         .map_err(|cause| format!("attribute bodies of /whipple: {cause}"))?;
     let parts: Vec<PartName> = bodies
         .into_iter()
         .map(|name| PartName { number: None, name })
         .collect();
-    let names = file.names().map_err(told)?;
+    let names = file.names().map_err(read_fault)?;
     let mut columns = columns(&file, &names)?;
     let wanted = choose(&parts, &request.parts)?;
     let frozen = names.iter().any(|name| name == "frozen");
@@ -45,10 +45,11 @@ pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
         for (quantity, all) in &mut columns {
             let n = quantity.components();
             let mut values = if *quantity == Quantity::Position {
-                let points = file.points(rows.clone()).map_err(told)?;
+                let points = file.points(rows.clone()).map_err(read_fault)?;
                 points.into_flattened()
             } else {
-                file.values(quantity.name(), rows.clone()).map_err(told)?
+                file.values(quantity.name(), rows.clone())
+                    .map_err(read_fault)?
             };
             from_vtk(*quantity, &mut values);
             let rows = values.chunks_exact(n).zip(&kept);
@@ -59,7 +60,7 @@ pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
 }
 
 #[allow(clippy::needless_pass_by_value, reason = "to map errors by")]
-fn told(cause: ReadError) -> Fault {
+fn read_fault(cause: ReadError) -> Fault {
     Fault::from(cause.to_string())
 }
 
@@ -82,7 +83,7 @@ fn columns(file: &SnapshotFile, names: &[String]) -> Result<Vec<(Quantity, Vec<f
         if is_other || !holds(quantity.name()) {
             continue;
         }
-        let found = file.components(quantity.name()).map_err(told)?;
+        let found = file.components(quantity.name()).map_err(read_fault)?;
         if found != quantity.components() {
             let name = quantity.name();
             return Err(format!("its field {name} has {found} components").into());

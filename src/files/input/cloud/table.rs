@@ -81,7 +81,7 @@ impl Table {
         first.map_or(0, |(quantity, values)| values.len() / quantity.components())
     }
 
-    /// Whether all is there, finite and in range.
+    /// True if all is there, finite and in range.
     ///
     /// # Errors
     /// The first that is not.
@@ -142,7 +142,7 @@ impl Table {
     }
 }
 
-/// Whether nature knows a value (SI).
+/// True if nature knows a value (SI).
 fn is_sound(quantity: Quantity, x: f64) -> bool {
     x.is_finite()
         && match quantity {

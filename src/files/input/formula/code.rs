@@ -17,12 +17,12 @@ pub struct Part {
     pub powers: Powers,
     /// Its value, if that is the same everywhere; then it is one operation.
     pub constant: Option<f64>,
-    /// Whether it is a temperature whose zero is that of Celsius.
+    /// True if it is a temperature whose zero is that of Celsius.
     pub celsius: bool,
 }
 
 impl Part {
-    /// Whether it is a plain zero, which stands for that of any dimension.
+    /// True if it is a plain zero, which stands for that of any dimension.
     pub fn is_zero(&self) -> bool {
         self.constant == Some(0.0) && self.powers == PLAIN
     }
@@ -38,7 +38,7 @@ impl Part {
 pub struct Code(pub Vec<Operation>);
 
 impl Code {
-    /// Whether the last operation puts a number on the stack.
+    /// True if the last operation puts a number on the stack.
     pub fn ends_with_number(&self) -> bool {
         matches!(self.0.last(), Some(Operation::Number(_)))
     }

@@ -18,7 +18,7 @@ use model::{
 
 /// What may be typed.
 pub trait Described {
-    /// Whether a key of this type may be left out.
+    /// True if a key of this type may be left out.
     const OPTIONAL: bool = false;
 
     /// Its schema; tables stand in `definitions`.
@@ -44,7 +44,7 @@ pub struct Key {
     pub name: &'static str,
     /// Lines of its documentation.
     pub docs: &'static [&'static str],
-    /// Whether it may be left out.
+    /// True if it may be left out.
     pub optional: bool,
     /// What may be typed.
     pub value: fn(&mut Definitions) -> Value,

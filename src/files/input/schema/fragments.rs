@@ -18,9 +18,9 @@ optional_tables! {
         link: Option<Spanned<f64>> = FragmentOptions::default().link, Within(1.0, LONGEST);
         /// What belongs to fragments.
         include: Option<Include> = FragmentOptions::default().include;
-        /// Whether a single particle joins two fragments.
+        /// True if a single particle joins two fragments.
         bridges: Option<bool> = FragmentOptions::default().bridges;
-        /// Whether particles of different bodies are linked.
+        /// True if particles of different bodies are linked.
         across_bodies: Option<bool> = FragmentOptions::default().across_bodies;
         /// Least number of particles of a fragment.
         min_particles: Option<Spanned<i64>> = FragmentOptions::default().min_particles, AtLeast(1);

@@ -15,7 +15,7 @@ tables! {
         name: Option<Spanned<String>> => "`gauge-1` and so on";
         /// Where it is, or begins.
         at: Spanned<Vec<Placed<Length>>>;
-        /// Whether the particle nearest at the start carries it, in place of being fixed in space.
+        /// True if the particle nearest at the start carries it, in place of being fixed in space.
         moves: Option<bool> = false;
         /// Name of the body whose matter it reads.
         body: Option<Spanned<String>> => "all that deform";
@@ -91,7 +91,7 @@ tables! {
         centre: Option<Spanned<Vec<Placed<Length>>>>;
         /// Radius of the ball.
         radius: Option<Placed<Length>>, Positive;
-        /// Whether it is what begins there and moves, in place of being fixed in space.
+        /// True if it is what begins there and moves, in place of being fixed in space.
         moves: Option<bool> = false;
         /// Name of the body whose matter it reads.
         body: Option<Spanned<String>> => "all that deform";
@@ -117,9 +117,9 @@ tables! {
 optional_tables! {
     /// `[measure]`
     MeasureParams {
-        /// Whether `bodies.csv` is written.
+        /// True if `bodies.csv` is written.
         bodies: Option<bool> = true;
-        /// Whether plates, targets and bars are found by their shapes.
+        /// True if plates, targets and bars are found by their shapes.
         usual: Option<bool> = true;
         /// Time between rows of `measures.csv`.
         every: Option<Placed<Time>>, Positive => "a tenth of the run";

@@ -53,7 +53,7 @@ tables! {
         bodies: Option<Spanned<Vec<Spanned<String>>>> => "all";
         /// What of space it holds.
         region: Option<Spanned<KeepParams>> => "all";
-        /// Whether numbers have 64 bits or 32.
+        /// True if numbers have 64 bits, false if 32.
         precision: Option<Precision> = Precision::Double;
     }
 }

@@ -21,7 +21,7 @@ tables! {
         angle: Option<Placed<Angle>>;
         /// About which it is turned.
         axis: Option<Spanned<AxisParams>> => "z";
-        /// Whether the lattice is stretched to fill a box.
+        /// True if the lattice is stretched to fill a box.
         fit: Option<Spanned<bool>> = false;
         /// Which glass.
         seed: Option<Spanned<i64>> => "0";
@@ -89,7 +89,7 @@ pub struct LatticeParams {
     pub angle: Option<Placed<Angle>>,
     /// About which it is turned.
     pub axis: Option<Spanned<AxisParams>>,
-    /// Whether the lattice is stretched to fill a box.
+    /// True if the lattice is stretched to fill a box.
     pub fit: Option<Spanned<bool>>,
     /// Which glass.
     pub seed: Option<Spanned<i64>>,
@@ -186,7 +186,7 @@ typed_as! {
     }
 }
 
-/// Whether there is self-contact, or a table of what it does.
+/// True if there is self-contact, or a table of what it does.
 #[derive(Debug)]
 pub enum SelfContactParams {
     /// With parts alone, or not at all.
@@ -202,7 +202,7 @@ typed_as! {
     }
 }
 
-/// Whether a zone has a round face: the shape's own, or one of a table.
+/// True if a zone has a round face: the shape's own, or one of a table.
 #[derive(Debug)]
 pub enum RoundParams {
     /// The shape's own, or none.

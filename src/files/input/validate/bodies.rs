@@ -117,7 +117,7 @@ impl Reader<'_> {
             initial: initial::initial(params, varied, self.dimension)?,
         };
         if let Some(cloud) = body.cloud().map(|(cloud, _)| cloud.clone()) {
-            particles::told(&cloud, &mut body.velocity, &mut body.initial);
+            particles::set_initial(&cloud, &mut body.velocity, &mut body.initial);
         }
         Ok(body)
     }

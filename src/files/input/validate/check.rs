@@ -44,7 +44,7 @@ impl Allowed {
             }
     }
 
-    /// Whether it has a whole number.
+    /// True if it has a whole number.
     #[allow(clippy::cast_precision_loss, reason = "bounds are small")]
     pub fn has_whole(self, n: u64) -> bool {
         self.has(n as f64)

@@ -88,8 +88,8 @@ fn self_contact(
     let joined = modes.any(|mode| mode == ContactMode::Kernel);
     let overlap = default.laws.overlap;
     let Some(given) = &params.self_contact else {
-        let usual = tears && !joined && matches!(default.mode(), ContactMode::Overlap(_));
-        return Ok(usual.then_some(SelfContact {
+        let is_default = tears && !joined && matches!(default.mode(), ContactMode::Overlap(_));
+        return Ok(is_default.then_some(SelfContact {
             overlap,
             folds: None,
         }));

@@ -6,7 +6,7 @@ use super::laws::law;
 use crate::input::forms::OrNone;
 use crate::input::schema::{FailureParams, failure_laws};
 use crate::input::source::Diagnostic;
-use material::{AfterSpall, Effect, Failure, Law, Manner, Strength};
+use material::{AfterSpall, Effect, Failure, FailureOptions, Law, Strength};
 
 macro_rules! failure {
     ($(
@@ -28,7 +28,7 @@ macro_rules! failure {
                         }
                     },
                 }, )+
-                manner: base.manner,
+                options: base.options,
             })
         }
     };
@@ -50,21 +50,21 @@ pub fn failure(
         Some(OrNone::Table(params)) => laws(params, &base)?,
     };
     if !failure.is_none() {
-        failure.manner.dimension = u8::try_from(dimension).unwrap_or(3);
+        failure.options.dimension = u8::try_from(dimension).unwrap_or(3);
     }
     if let Some(table) = table
         && let OrNone::Table(params) = table.get_ref()
     {
-        failure.manner = manner(params, &failure)?;
+        failure.options = options(params, &failure)?;
         check(table, params, &failure, strength)?;
     }
     Ok(failure)
 }
 
 /// What the laws have in common.
-fn manner(params: &FailureParams, failure: &Failure) -> Result<Manner, Diagnostic> {
-    let base = failure.manner;
-    let mut manner = Manner {
+fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, Diagnostic> {
+    let base = failure.options;
+    let mut options = FailureOptions {
         fracture_energy: params.fracture_energy()?.unwrap_or(base.fracture_energy),
         scatter: params.scatter()?.unwrap_or(base.scatter),
         seed: params
@@ -78,8 +78,8 @@ fn manner(params: &FailureParams, failure: &Failure) -> Result<Manner, Diagnosti
         ..base
     };
     // What fades says so by itself.
-    let fades = manner.softens() || failure.grady_kipp.is_some();
-    manner.effect = match &params.effect {
+    let fades = options.softens() || failure.grady_kipp.is_some();
+    options.effect = match &params.effect {
         Some(effect) if fades && *effect.get_ref() != Effect::Scaled => {
             let title = "where cracks grow or matter softens, stress fades with damage";
             return Err(
@@ -90,7 +90,7 @@ fn manner(params: &FailureParams, failure: &Failure) -> Result<Manner, Diagnosti
         None if fades => Effect::Scaled,
         None => base.effect,
     };
-    Ok(manner)
+    Ok(options)
 }
 
 /// Refuses what does not go together.
@@ -100,7 +100,7 @@ fn check(
     failure: &Failure,
     strength: &Strength,
 ) -> Result<(), Diagnostic> {
-    let manner = &failure.manner;
+    let options = &failure.options;
     if failure.is_none() {
         let given = [
             params.effect.as_ref().map(Spanned::span),
@@ -120,7 +120,7 @@ fn check(
         .fracture_energy
         .as_ref()
         .map_or_else(|| table.span(), Spanned::span);
-    if manner.softens() {
+    if options.softens() {
         if failure.grady_kipp.is_some() {
             let title =
                 "cracks of `grady_kipp` take no `fracture_energy`: how they grow is their law";
@@ -135,7 +135,7 @@ fn check(
             return Err(Diagnostic::new(at, title));
         }
     }
-    if manner.scatter > 0.0 && failure.johnson_cook.is_none() && failure.plastic_strain.is_none() {
+    if options.scatter > 0.0 && failure.johnson_cook.is_none() && failure.plastic_strain.is_none() {
         let at = (params.scatter.as_ref()).map_or_else(|| table.span(), Spanned::span);
         let title = "no failure strain that could scatter";
         return Err(Diagnostic::new(at, title).help("`johnson_cook` and `plastic_strain` have one"));
@@ -150,7 +150,7 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
     let strains = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
     if failure.grady_kipp.is_some() && strength.shear_modulus() == 0.0 {
         Some("cracks grow in solids, and this material has no shear modulus")
-    } else if failure.manner.effect == Effect::Scaled && unscaled {
+    } else if failure.options.effect == Effect::Scaled && unscaled {
         Some(
             "stress that fades with damage needs a strength that is elastic, or elastic and plastic",
         )

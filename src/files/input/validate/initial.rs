@@ -104,7 +104,7 @@ fn within(mut inner: Diagnostic, span: &Range<usize>, text: &str) -> Diagnostic 
 
 /// Finds where bodies in their final places turn and how far what varies goes, and refuses what
 /// nature or the material does not know.
-pub fn settle(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     for (b, table) in params.iter().enumerate() {
         let params = table.get_ref();
         fits_material(case, &case.bodies[b], params)?;
@@ -169,7 +169,7 @@ fn turn_about(body: &mut Body, params: &BodyParams, dimension: usize) -> Result<
     Ok(())
 }
 
-/// Whether what a body begins with is in range at its particles, and how far it goes.
+/// True if what a body begins with is in range at its particles, and how far it goes.
 fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), Diagnostic> {
     let body = &case.bodies[b];
     let refuse = |position: &Vec3| {

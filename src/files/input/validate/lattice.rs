@@ -10,7 +10,7 @@ use model::{Axis, Lattice, LatticeKind, Shape, SphForm};
 /// What fills bodies that do not say: glass, which prefers no direction. In the plane, where the
 /// kernel sums of glass scatter five times as much, and where stress points need rows, a cubic
 /// lattice.
-pub fn usual(dimension: usize, form: SphForm) -> LatticeKind {
+pub fn default_kind(dimension: usize, form: SphForm) -> LatticeKind {
     if dimension == 3 && form != SphForm::StressPoints {
         LatticeKind::Glass
     } else {
@@ -18,17 +18,17 @@ pub fn usual(dimension: usize, form: SphForm) -> LatticeKind {
     }
 }
 
-/// The lattice of a body of some shape; of the usual kind if absent.
+/// The lattice of a body of some shape; of the default kind if absent.
 pub fn lattice(
     shapes: &Shapes,
     params: Option<&Spanned<LatticeParams>>,
     shape: &Shape,
-    usual: LatticeKind,
+    default: LatticeKind,
 ) -> Result<Lattice, Diagnostic> {
     let spacing = shapes.spacing;
     let Some(table) = params else {
         return Ok(Lattice {
-            kind: usual,
+            kind: default,
             spacing,
             ..Lattice::default()
         });
@@ -71,7 +71,7 @@ pub fn lattice(
     })
 }
 
-/// Whether a lattice is stretched to fill its shape.
+/// True if a lattice is stretched to fill its shape.
 fn fits(params: &LatticeParams, is_turned: bool, shape: &Shape) -> Result<bool, Diagnostic> {
     let Some(fit) = params.fit.as_ref().filter(|fit| *fit.get_ref()) else {
         return Ok(false);

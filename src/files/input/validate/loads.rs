@@ -149,7 +149,7 @@ impl Reader<'_> {
         )))
     }
 
-    /// Whether a load drives any particle of its body.
+    /// True if a load drives any particle of its body.
     fn holds_any(&self, load: &VelocityLoad, body: &Body) -> bool {
         // Nought in the region and infinite beyond.
         let value = |is_within: bool| if is_within { 0.0 } else { f64::INFINITY };

@@ -2,12 +2,12 @@
 
 use toml::Spanned;
 
+use super::defaults;
 use super::loads::given_name;
 use super::named::{body, fields, unique};
 use super::region::region;
 use super::shapes::vector;
 use super::surfaces::unit_vector;
-use super::usual;
 use crate::input::schema::{
     BarParams, DebrisParams, FrontParams, MeasureParams, NormalParams, SlabParams, ZoneParams,
 };
@@ -46,7 +46,7 @@ pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Dia
         reader.bar(table)?;
     }
     if params.usual() {
-        reader.usual();
+        reader.add_defaults();
     }
     for (n, table) in params.debris.iter().enumerate() {
         reader.debris(table, n + 1)?;
@@ -116,7 +116,7 @@ impl Reader<'_> {
         may_cross: bool,
     ) -> Result<[f64; 3], Diagnostic> {
         let way = unit_vector(key, params, self.case.dimension)?;
-        if usual::suits_symmetry(self.case, &way, may_cross) {
+        if defaults::suits_symmetry(self.case, &way, may_cross) {
             return Ok(way);
         }
         let title = "the direction is not its own mirror image at a symmetry plane";
@@ -127,21 +127,21 @@ impl Reader<'_> {
         &mut self,
         table: &Spanned<SlabParams>,
         kind: fn(Slab) -> MeasureKind,
-        usual: Include,
+        default: Include,
     ) -> Result<(), Diagnostic> {
         self.require_space(table)?;
         let params = table.get_ref();
         let index = self.deforming(&params.body)?;
         let normal = match &params.normal {
             Some(normal) => self.direction("normal", normal, false)?,
-            None => usual::struck_face(self.case, index).ok_or_else(|| {
+            None => defaults::struck_face(self.case, index).ok_or_else(|| {
                 let title = "nothing moves towards a face of the body that would be struck";
                 Diagnostic::new(params.body.span(), title)
                     .help("give its `normal`, as in `normal = \"+z\"`")
             })?,
         };
         let name = self.name_or_body(params.name.as_ref(), index);
-        let include = params.include.unwrap_or(usual);
+        let include = params.include.unwrap_or(default);
         let slab = Slab::new(self.case, index, normal, include);
         self.add(table, params.name.as_ref(), name, kind(slab))
     }
@@ -157,7 +157,7 @@ impl Reader<'_> {
         let index = self.deforming(&params.body)?;
         let foot = match &params.foot {
             Some(foot) => self.direction("foot", foot, true)?,
-            None => usual::foot(self.case, index).ok_or_else(|| {
+            None => defaults::foot(self.case, index).ok_or_else(|| {
                 let title = "the body has no axis of its own that would be a bar's";
                 Diagnostic::new(params.body.span(), title)
                     .help("give its `foot`, as in `foot = \"-z\"`")
@@ -173,7 +173,7 @@ impl Reader<'_> {
     }
 
     /// The measures that shapes ask for, of bodies without one.
-    fn usual(&mut self) {
+    fn add_defaults(&mut self) {
         if self.case.dimension < 3 {
             return;
         }
@@ -187,7 +187,7 @@ impl Reader<'_> {
             if measured || self.has(name) {
                 continue;
             }
-            if let Some(kind) = usual::measure(self.case, index) {
+            if let Some(kind) = defaults::measure(self.case, index) {
                 let name = name.clone();
                 self.found.push(Measure { name, kind });
             }
@@ -197,8 +197,8 @@ impl Reader<'_> {
     /// What leaves plates behind them, and targets before them, unless a table tells it.
     fn usual_debris(&mut self) {
         for k in 0..self.found.len() {
-            let told = |measure: &Measure| matches!(&measure.kind, MeasureKind::Debris(d) if d.of == Some(k));
-            if self.found.iter().any(told) {
+            let is_given = |measure: &Measure| matches!(&measure.kind, MeasureKind::Debris(d) if d.of == Some(k));
+            if self.found.iter().any(is_given) {
                 continue;
             }
             let (slab, what, sense) = match &self.found[k].kind {

@@ -5,6 +5,7 @@ pub(super) mod check;
 mod absorbers;
 mod bodies;
 mod contact;
+mod defaults;
 mod domain;
 mod eos;
 mod failure;
@@ -30,7 +31,6 @@ mod strength;
 mod stress_points;
 mod surfaces;
 mod touch;
-mod usual;
 
 use std::ops::Range;
 use std::path::Path;
@@ -64,7 +64,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         case: params,
         materials: &names,
         known: &materials,
-        filling: lattice::usual(dimension, sph.form),
+        filling: lattice::default_kind(dimension, sph.form),
         smoothing,
         folder,
     }
@@ -114,7 +114,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
 
 /// Reads what asks a case, and checks what does not go together in it.
 fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
-    initial::settle(case, &params.body)?;
+    initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
@@ -123,7 +123,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     check_overlaps(case, &params.body)
 }
 
-/// Whether bodies may come apart into what can meet again.
+/// True if bodies may come apart into what can meet again.
 fn may_tear(bodies: &[Body], materials: &[Material]) -> bool {
     let soft = bodies.iter().filter(|body| body.rigid.is_none());
     let mut materials = soft.map(|body| &materials[body.material]);

@@ -52,13 +52,13 @@ impl Reader<'_> {
     fn schedule(
         &self,
         params: &SnapshotParams,
-        usual: &[String],
+        default: &[String],
         others: &[SnapshotSchedule],
     ) -> Result<SnapshotSchedule, Diagnostic> {
         let name = &params.name;
         check_name(name, others)?;
         let fields = match &params.fields {
-            None => usual.to_vec(),
+            None => default.to_vec(),
             named => self.fields(named)?,
         };
         let region = params.region.as_ref();

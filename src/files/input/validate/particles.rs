@@ -167,11 +167,11 @@ impl Files<'_> {
         count: usize,
     ) -> Result<Vec<f64>, String> {
         let density = self.density(body);
-        let told = rows.take(Quantity::Volume);
+        let given = rows.take(Quantity::Volume);
         if let Some(masses) = rows.get(Quantity::Mass) {
             return Ok(masses.iter().map(|mass| mass / density).collect());
         }
-        let volumes = match (told, self.spacing) {
+        let volumes = match (given, self.spacing) {
             (Some(volumes), _) => volumes,
             (None, Some(spacing)) => {
                 let volume = cube(spacing, self.dimension);
@@ -295,7 +295,7 @@ fn turned(quantity: Quantity, values: &mut [f64], turn: &nalgebra::Matrix3<f64>)
 
 /// What a cloud tells of its body as a whole: the middle of its velocities (m/s), the largest
 /// difference from that, and the specific energy (J/kg) of the largest magnitude.
-pub fn told(cloud: &Cloud, velocity: &mut Vec3, initial: &mut Initial) {
+pub fn set_initial(cloud: &Cloud, velocity: &mut Vec3, initial: &mut Initial) {
     if let Some(velocities) = cloud.all(Quantity::Velocity) {
         let (velocities, _) = velocities.as_chunks::<3>();
         let (lower, upper) = ends(velocities);

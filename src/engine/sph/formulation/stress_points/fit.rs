@@ -118,7 +118,7 @@ impl<S: PairScale> Vectorised for FitChunk<'_, S> {
             let none = [F64x8([0.0; LANES]); 9];
             let (mut ends, mut means) = (none, none);
             for k in 0..cluster.lanes {
-                let i = self.images[cluster.receivers[k] as usize].base();
+                let i = self.images[cluster.receivers[k] as usize].slot();
                 let last = self.update.last_gradient(i);
                 let MidStep { start, mean, end } = self.target.store(i, k, &fitted, &last);
                 for c in 0..9 {

@@ -12,7 +12,7 @@ const FOREIGN_WORK: usize = 90;
 const INTERPENETRATION_DISTANCE: f64 = 0.28;
 
 /// Where contact forces go, and what of the particles the sums need.
-pub(super) struct Books<'a> {
+pub(super) struct Accumulators<'a> {
     pub acceleration: Scatter<'a, [f64; 3]>,
     /// That by stress and viscosity.
     pub viscous: Scatter<'a, [f64; 3]>,
@@ -34,7 +34,7 @@ pub(super) struct Books<'a> {
     pub safety: f64,
 }
 
-impl Books<'_> {
+impl Accumulators<'_> {
     #[inline]
     pub fn book(&self, forces: &TaskForces, sums: &mut ContactSums) {
         for force in &forces.particles {

@@ -13,7 +13,7 @@ use populate;
 
 /// The boxes of all bodies, and the axes along which slabs are cut.
 #[derive(Debug, Clone)]
-pub struct Outset {
+pub struct InitialLayout {
     /// Boxes of the sites (m), by body, cut at the symmetry planes.
     pub boxes: Vec<Extent>,
     /// The axis along which the case is longest (0, 1, 2).
@@ -23,7 +23,7 @@ pub struct Outset {
     pub axes: [usize; 3],
 }
 
-impl Outset {
+impl InitialLayout {
     /// Of a case; `None` if a body has no sites, or there is none.
     #[must_use]
     pub fn new(case: &Case) -> Option<Self> {

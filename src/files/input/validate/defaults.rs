@@ -14,7 +14,7 @@ const ROUND: f64 = 1.5;
 /// A target is at least so many times as large as what strikes it.
 const LARGE: f64 = 1.5;
 
-/// Whether a direction is along each symmetry plane; if it `may_cross`, also normal to one.
+/// True if a direction is along each symmetry plane; if it `may_cross`, also normal to one.
 pub fn suits_symmetry(case: &Case, way: &[f64; 3], may_cross: bool) -> bool {
     case.symmetry.iter().all(|plane| {
         let across = way[plane.axis.index()].abs();

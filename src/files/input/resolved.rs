@@ -10,7 +10,7 @@ use model::{Case, SurfaceFile};
 
 /// The resolved text of a case from a folder with the absolute paths of its files of triangles and of
 /// particles, and their digests.
-pub fn settle(resolved: String, folder: &Path, case: &Case) -> Result<String, Diagnostic> {
+pub fn with_files(resolved: String, folder: &Path, case: &Case) -> Result<String, Diagnostic> {
     let meshes = case.meshes().into_iter();
     let files: Vec<&SurfaceFile> = meshes.filter_map(|(_, mesh)| mesh.file()).collect();
     if files.is_empty() && case.bodies.iter().all(|body| body.cloud().is_none()) {

@@ -1,4 +1,4 @@
-//! Kinds of particles, as contact tells them apart: bodies, and classes of size where the particles
+//! Size classes of particles, as contact tells them apart: bodies, and classes of size where the particles
 //! of a body are unequal.
 
 use model::{Body, Case, SmoothingLength, cube};
@@ -14,24 +14,24 @@ fn step(body: &Body) -> f64 {
     STEP.max(libm::pow(most / least, 1.0 / (MOST_CLASSES - 1.0)))
 }
 
-/// The kinds of a case. Bodies whose particles are alike have one kind each.
+/// The size classes of a case. Bodies whose particles are alike have one size class each.
 #[derive(Debug, Clone, Default)]
-pub struct Kinds {
-    /// The first kind of each body, and at last how many kinds there are.
+pub struct SizeClasses {
+    /// The first size class of each body, and at last how many size classes there are.
     first: Vec<usize>,
-    /// Mass (kg) from which on a particle is of the next kind of its body.
+    /// Mass (kg) from which on a particle is of the next size class of its body.
     limits: Vec<f64>,
-    /// Body of each kind.
+    /// Body of each size class.
     body: Vec<usize>,
     /// Size of its particles against the spacing of the body.
     size: Vec<f64>,
 }
 
-impl Kinds {
+impl SizeClasses {
     /// Of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
-        let mut kinds = Self {
+        let mut size_classes = Self {
             first: vec![0],
             ..Self::default()
         };
@@ -42,20 +42,20 @@ impl Kinds {
             let mut size = least;
             loop {
                 let limit = size * step.sqrt();
-                kinds.body.push(b);
-                kinds.size.push(size);
-                kinds.limits.push(mass * cube(limit, case.dimension));
+                size_classes.body.push(b);
+                size_classes.size.push(size);
+                size_classes.limits.push(mass * cube(limit, case.dimension));
                 if limit >= most {
                     break;
                 }
                 size *= step;
             }
-            kinds.first.push(kinds.body.len());
+            size_classes.first.push(size_classes.body.len());
         }
-        kinds
+        size_classes
     }
 
-    /// One kind for each of so many bodies.
+    /// One size class for each of so many bodies.
     #[must_use]
     pub fn of_bodies(count: usize) -> Self {
         Self {
@@ -89,7 +89,7 @@ impl Kinds {
         self.first.len() - 1
     }
 
-    /// The kind of a particle of a body with a mass (kg).
+    /// The size class of a particle of a body with a mass (kg).
     #[inline(always)]
     #[must_use]
     pub fn of(&self, body: usize, mass: f64) -> usize {
@@ -101,24 +101,24 @@ impl Kinds {
         first + limits.partition_point(|&limit| limit <= mass)
     }
 
-    /// The kind of a body that has the smallest particles.
+    /// The size class of a body that has the smallest particles.
     #[must_use]
     pub fn smallest(&self, body: usize) -> usize {
         self.first[body]
     }
 
-    /// The body of a kind.
+    /// The body of a size class.
     #[must_use]
-    pub fn body(&self, kind: usize) -> usize {
-        self.body[kind]
+    pub fn body(&self, size_class: usize) -> usize {
+        self.body[size_class]
     }
 
-    /// A body with a spacing as that of a kind.
+    /// A body with a spacing as that of a size class.
     #[must_use]
-    pub fn body_of_size(&self, case: &Case, kind: usize) -> Body {
-        let mut body = case.bodies[self.body[kind]].clone();
-        body.lattice.spacing *= self.size[kind];
-        body.smoothing_length *= self.size[kind];
+    pub fn body_of_size(&self, case: &Case, size_class: usize) -> Body {
+        let mut body = case.bodies[self.body[size_class]].clone();
+        body.lattice.spacing *= self.size[size_class];
+        body.smoothing_length *= self.size[size_class];
         body
     }
 }

@@ -1,7 +1,7 @@
 //! What particles show to other ranks beside their fields.
 
-/// Bytes of this rank's particles, and those that it has heard of halo particles.
-pub trait Shown: Sync {
+/// Bytes of this rank's particles, and those that it has received of halo particles.
+pub trait Payload: Sync {
     /// Bytes of a particle.
     fn size(&self) -> usize;
 
@@ -9,5 +9,5 @@ pub trait Shown: Sync {
     fn of(&self, particle: usize) -> &[u8];
 
     /// Where those of so many halo particles go, one after the other.
-    fn heard(&mut self, halo: usize) -> &mut [u8];
+    fn received(&mut self, halo: usize) -> &mut [u8];
 }
