@@ -90,7 +90,7 @@ impl Instructions {
 
 /// Work that is compiled once for each instruction set.
 pub trait Vectorised {
-    /// What it returns.
+    /// Result of the work.
     type Output;
     /// The work on vectors `V`; mark the implementation `#[inline(always)]`.
     fn run<V: Lanes>(self) -> Self::Output;

@@ -127,7 +127,7 @@ impl FixedKernel {
     }
 }
 
-/// What the kernel gives for eight pairs.
+/// Values of the kernel for eight pairs.
 #[derive(Debug, Clone, Copy)]
 pub struct PairKernel<V> {
     /// `W'` (1/m^(d+1)); an exact zero outside the support.
@@ -140,7 +140,7 @@ pub struct PairKernel<V> {
     pub inverse_h: V,
 }
 
-/// How the lanes get `h_ij` and what follows from it.
+/// Source of `h_ij` for the lanes, and of all that follows from it.
 pub trait PairScale: Copy + Sync {
     /// True if smoothing lengths differ.
     const VARIABLE: bool;

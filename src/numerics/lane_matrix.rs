@@ -5,7 +5,7 @@ use super::lanes::{F64x8, LANES, Lanes};
 /// A symmetric matrix in each lane; components xx, yy, zz, xy, xz, yz.
 pub type Symmetric<V> = [V; 6];
 
-/// Where the nine components of a symmetric matrix stand among its six.
+/// Indices of the nine components of a symmetric matrix among its six.
 pub const FULL: [usize; 9] = [0, 3, 4, 3, 1, 5, 4, 5, 2];
 
 /// All components of a symmetric matrix, row-major.

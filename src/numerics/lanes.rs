@@ -51,7 +51,7 @@ pub trait Lanes: Copy {
     /// This lane if it is smaller than `other`'s, else `other`'s (also where one is NaN).
     #[must_use]
     fn min(self, other: Self) -> Self;
-    /// Where `mask` is positive the smaller of this lane and `other`'s, elsewhere this lane.
+    /// The smaller of this lane and `other`'s where `mask` is positive, elsewhere this lane.
     #[must_use]
     fn min_where_positive(self, other: Self, mask: Self) -> Self;
     /// Bit k: lane k is smaller than `other`'s.
