@@ -84,7 +84,7 @@ pub struct CorrectedGradient<'a, S> {
     pub plain: u8,
 }
 
-/// What [`CorrectedGradient`] gives.
+/// Result of [`CorrectedGradient`].
 #[derive(Debug, Clone, Copy)]
 pub struct Corrected {
     /// Row-major `L` (1/s).

@@ -16,7 +16,7 @@ use particles::MirrorForce;
 use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
-/// What the second sweep reads and writes.
+/// Inputs and outputs of the second sweep.
 pub struct ForceSweep<'a, R> {
     /// Places, velocities and volumes of all particles and images.
     pub motion: Sources<'a, Scale>,
@@ -24,15 +24,15 @@ pub struct ForceSweep<'a, R> {
     pub images: &'a [Image],
     /// Odd of those behind symmetry planes.
     pub mirrored: &'a [u8],
-    /// What all particles and images show.
+    /// Stress records of all particles and images.
     pub stresses: &'a [R],
     /// Coefficients of the artificial viscosity.
     pub viscosity: Viscosity,
     /// The pair terms of the case.
     pub terms: PairTerms<'a>,
-    /// Which clusters are swept.
+    /// Side of the clusters that are swept.
     pub side: Side,
-    /// Where it writes.
+    /// Its target.
     pub target: ForceTarget<'a>,
 }
 
@@ -63,7 +63,7 @@ macro_rules! swept {
 }
 swept!(StressRecord, CorrectedRecord, NormalisedRecord);
 
-/// Where the second sweep writes.
+/// Target of the second sweep.
 pub struct ForceTarget<'a> {
     /// Mass (kg).
     pub mass: &'a [f64],
@@ -75,7 +75,7 @@ pub struct ForceTarget<'a> {
     pub approach: Scatter<'a, f64>,
     /// Correction of the drift by XSPH (m/s), if the case has it.
     pub correction: Option<Scatter<'a, [f64; 3]>>,
-    /// What the power of corrected stresses follows from.
+    /// Inputs of the power of corrected stresses.
     pub stress_power: StressPower<'a>,
 }
 
@@ -105,7 +105,7 @@ impl ForceTarget<'_> {
     }
 }
 
-/// What the power follows from that stresses put into heat: fields of all particles.
+/// Fields of all particles that give the power that stresses put into heat.
 pub struct StressPower<'a> {
     /// Pressure (Pa).
     pub pressure: &'a [f64],

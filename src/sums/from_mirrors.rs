@@ -1,13 +1,13 @@
-//! What a sweep finds of the images behind symmetry planes.
+//! Forces that a sweep finds of the images behind symmetry planes.
 
 use particles::MirrorForce;
 
-/// What the images behind symmetry planes exert on the particles of a chunk.
+/// Forces of the images behind symmetry planes on the particles of a chunk.
 #[derive(Debug, Clone, Default)]
 pub struct FromMirrors {
     /// The images among the neighbours of one cluster.
     pub indices: Vec<u32>,
-    /// What they do to single particles.
+    /// Their forces on single particles.
     pub forces: Vec<MirrorForce>,
 }
 

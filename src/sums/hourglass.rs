@@ -92,8 +92,8 @@ mod tests {
         assert!((3.9..4.1).contains(&(coarse / fine)), "{coarse} {fine}");
     }
 
-    /// What the neighbours move beyond a linear field, the particle lags behind; a step of no length
-    /// changes nothing.
+    /// The particle lags behind by all that the neighbours move beyond a linear field. A step of no
+    /// length changes nothing.
     #[test]
     fn lags_behind_its_neighbours() {
         let w = [1.0, 2.0, 3.0];

@@ -170,7 +170,7 @@ pub struct LinearFit<'a, S> {
     pub dimension: usize,
 }
 
-/// What [`LinearFit`] gives.
+/// Result of [`LinearFit`].
 #[derive(Debug, Clone, Copy)]
 pub struct Fitted {
     /// Row-major `L_s` (1/s).

@@ -5,11 +5,11 @@ use numerics::matrix::{inverse, product};
 /// Velocity gradients of one mid-step velocity (1/s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MidStep {
-    /// Where the step begins.
+    /// At the start of the step.
     pub start: [f64; 9],
     /// In its middle.
     pub mean: [f64; 9],
-    /// Where it ends.
+    /// At its end.
     pub end: [f64; 9],
 }
 

@@ -8,7 +8,7 @@ use numerics::kernel::PairScale;
 use numerics::lane_matrix::store_all;
 use numerics::lanes::{F64x8, LANES, Lanes};
 
-/// What a particle shows to its neighbours of its stress: one cache line.
+/// Record of the stress of a particle that its neighbours read: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub struct StressRecord {
@@ -53,7 +53,7 @@ pub struct Viscosity {
     pub negligible: f64,
 }
 
-/// What particles show of their stress, and how pairs of it sum up.
+/// Stress that particles show to neighbours, and its sums over pairs.
 pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// True if the power of stresses on their own particles is no sum over pairs.
     const CORRECTED: bool;
@@ -175,7 +175,7 @@ impl<V: Lanes> Viscous<V> {
 }
 
 impl<V: Lanes> ViscousPair<V> {
-    /// What conduction multiplies the difference of energies with.
+    /// Factor of conduction for the difference of energies.
     #[inline(always)]
     pub fn heat_speed(&self, separation: &Separation<V>) -> V {
         let zero = V::splat(0.0);
@@ -212,7 +212,7 @@ pub struct Forces {
 }
 
 impl Forces {
-    /// What particles without relative velocity and without stress do to each other, to the bit.
+    /// Forces of particles without relative velocity and stress on each other, to the bit.
     pub const NONE: Self = Self {
         acceleration: [F64x8([0.0; LANES]); 3],
         power: F64x8([0.0; LANES]),
@@ -232,7 +232,7 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for Momentum<'_,
 
 /// The stress of eight receivers, with that of one neighbour after the other.
 pub(crate) trait OwnStress<V: Lanes>: Sized {
-    /// What particles show.
+    /// Record that particles show.
     type Record: PairStress;
     /// True if it needs the kernel's value.
     const SHAPED: bool;
@@ -240,8 +240,8 @@ pub(crate) trait OwnStress<V: Lanes>: Sized {
     /// Of receivers that show this.
     fn begin<S: PairScale>(around: &Neighbourhood<S>, own: &[&Self::Record; LANES]) -> Self;
 
-    /// What of it, with the viscosity `Π`, acts over density squared along plain gradients: components xx, yy,
-    /// zz, xy, xz, yz (Pa m⁶/kg²).
+    /// Part of it that acts, with the viscosity `Π`, over density squared along plain gradients:
+    /// components xx, yy, zz, xy, xz, yz (Pa m⁶/kg²).
     fn plain(&self, other: &Self::Record, pi: V) -> [V; 6];
 
     /// Sums what else there is, of pairs with a neighbour of this volume (m^d) at a separation, with the kernel's slope

@@ -8,7 +8,7 @@ use particles::neighbours::MotionRecord;
 /// divides by something: it then adds an exact zero since its `r_ij` is zero.
 pub const SMALLEST_SQUARE: f64 = 1e-60;
 
-/// What a sweep sees of all particles and images.
+/// Facts of all particles and images that a sweep reads.
 #[derive(Debug, Clone, Copy)]
 pub struct Sources<'a, S> {
     /// Their motion.
@@ -103,7 +103,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
     }
 }
 
-/// What a sum over pairs divides by beside their distances.
+/// Divisor of a sum over pairs beside their distances.
 pub(crate) trait Divisor<V>: Copy {
     /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
     fn of(&self, index: usize, square: V, h: V) -> Option<V>;
@@ -122,7 +122,7 @@ pub(crate) struct Pair<'a, V> {
     pub(crate) index: usize,
     /// The neighbour.
     pub(crate) source: &'a MotionRecord,
-    /// How they stand.
+    /// Their separation.
     pub(crate) separation: Separation<V>,
     /// The kernel.
     pub(crate) kernel: PairKernel<V>,
@@ -242,7 +242,7 @@ fn length<S: PairScale>(lengths: &[f64], index: usize) -> f64 {
     if S::VARIABLE { lengths[index] } else { 0.0 }
 }
 
-/// Where eight receivers stand seen from one neighbour, with the distances.
+/// Positions of eight receivers seen from one neighbour, with the distances.
 #[derive(Clone, Copy)]
 pub(crate) struct Separation<V> {
     /// `x_i − x_j` (m).
@@ -255,7 +255,7 @@ pub(crate) struct Separation<V> {
     pub(crate) inverse: V,
 }
 
-/// How far eight receivers stand from one neighbour.
+/// Distances of eight receivers from one neighbour.
 #[derive(Clone, Copy)]
 struct Distance<V> {
     square: V,

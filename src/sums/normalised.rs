@@ -107,7 +107,7 @@ pub struct NormalisedGradient<'a, S> {
     pub dimension: usize,
 }
 
-/// What [`NormalisedGradient`] gives.
+/// Result of [`NormalisedGradient`].
 #[derive(Debug, Clone, Copy)]
 pub struct Corrected {
     /// Row-major `L_i = Σ V_j (v_j − v_i) ⊗ ∇ᶜW_ij` (1/s).

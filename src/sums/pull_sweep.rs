@@ -13,19 +13,19 @@ use particles::MirrorForce;
 use particles::neighbours::{Chunk, Cluster};
 use particles::{Image, Scatter};
 
-/// What the second sweep reads and writes.
+/// Inputs and outputs of the second sweep.
 pub struct PullSweep<'a> {
     /// Places, velocities and volumes of all particles and images.
     pub motion: Sources<'a, Scale>,
-    /// What all particles and images show that are stress points.
+    /// Records of all particles and images that are stress points.
     pub points: &'a [StressPointRecord],
     /// All particles and images, in the order of the lists.
     pub images: &'a [Image],
     /// Groups below are of velocity particles.
     pub body_groups: usize,
-    /// Which clusters are swept.
+    /// Side of the clusters that are swept.
     pub side: Side,
-    /// Where it writes.
+    /// Its target.
     pub target: PullTarget<'a>,
 }
 
@@ -41,7 +41,7 @@ impl PullSweep<'_> {
     }
 }
 
-/// Where it writes.
+/// Target of the sweep.
 pub struct PullTarget<'a> {
     /// Mass (kg).
     pub mass: &'a [f64],

@@ -1,4 +1,4 @@
-//! What a step tells the sums.
+//! Facts of a step that the sums need.
 
 /// A step as the sums know it.
 #[derive(Debug, Clone, Copy)]
@@ -13,7 +13,7 @@ pub struct Step {
     pub gravity: [f64; 3],
 }
 
-/// Which clusters of receivers a sweep takes.
+/// Clusters of receivers that a sweep takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// Those without halo particles among their neighbours, which need not wait for messages.

@@ -13,7 +13,7 @@ use numerics::kernel::PairScale;
 use numerics::lane_matrix::store_all;
 use numerics::lanes::{F64x8, Lanes};
 
-/// What a stress point shows to velocity particles.
+/// Record of a stress point that velocity particles read.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct StressPointRecord {
@@ -54,11 +54,11 @@ pub fn moment(
 pub struct Pull<'a, S> {
     /// The particles and the points.
     pub around: Neighbourhood<'a, S>,
-    /// What all particles and images that are stress points show.
+    /// Records of all particles and images that are stress points.
     pub points: &'a [StressPointRecord],
 }
 
-/// What [`Pull`] gives.
+/// Result of [`Pull`].
 #[derive(Debug, Clone, Copy)]
 pub struct Pulled {
     /// `f_a = −Σ_s w Q_s (x_a − x̄_s)` (N).

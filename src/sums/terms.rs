@@ -41,7 +41,7 @@ macro_rules! with_terms {
 }
 pub(super) use with_terms;
 
-/// What a particle shows to its neighbours for the terms: one cache line.
+/// Record of a particle for the terms that its neighbours read: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub struct TermRecord {
@@ -54,7 +54,7 @@ pub struct TermRecord {
 }
 
 impl TermRecord {
-    /// What changes nothing.
+    /// Record that changes nothing.
     pub const NEUTRAL: Self = Self {
         repulsion: [0.0; 6],
         half_limiter: 0.5,
@@ -62,10 +62,10 @@ impl TermRecord {
     };
 }
 
-/// Which terms there are, their coefficients, and what particles show for them.
+/// Terms that there are, their coefficients, and the records of particles for them.
 #[derive(Debug, Clone, Copy)]
 pub struct PairTerms<'a> {
-    /// Which ones: constants of this module.
+    /// Set of the terms: constants of this module.
     pub set: u8,
     /// Records of all particles and images; empty without terms.
     pub records: &'a [TermRecord],
@@ -87,7 +87,7 @@ impl PairTerms<'_> {
         xsph: 0.0,
     };
 
-    /// What the particle or image at an index shows, if there are terms.
+    /// Record of the particle or image at an index, if there are terms.
     #[inline(always)]
     pub(crate) fn record<const TERMS: bool>(&self, index: usize) -> &TermRecord {
         if TERMS {
@@ -168,7 +168,7 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
         }
     }
 
-    /// What conduction lets flow times speed (J/kg), added to `work` by `speed`.
+    /// Flow of conduction times speed (J/kg), added to `work` by `speed`.
     #[inline(always)]
     pub fn conduct(&self, work: V, other: &TermRecord, speed: impl FnOnce() -> V) -> V {
         if self.has(CONDUCTION) {
@@ -178,7 +178,7 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
         }
     }
 
-    /// What XSPH adds to the drift (m/s).
+    /// Drift that XSPH adds (m/s).
     #[inline(always)]
     pub fn correction(&self) -> [V; 3] {
         self.xsph.correction()

@@ -9,7 +9,7 @@ use numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
 use numerics::matrix;
 
-/// What a particle shows to its neighbours of its stress.
+/// Record of the stress of a particle that its neighbours read.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct CorrectedRecord {

@@ -1,5 +1,5 @@
-//! What the plain sums of the first sweep tell of a motion: strain, spin, and the rest that no linear
-//! field explains.
+//! Motion by the plain sums of the first sweep: strain, spin, and the rest that no linear field
+//! explains.
 
 use numerics::lane_matrix::{Symmetric, along, faded, full, times};
 use numerics::lanes::Lanes;
@@ -7,11 +7,11 @@ use numerics::lanes::Lanes;
 /// e⁴ of the spin, at e = .05: a lone pair does not tell how it turns about its own axis.
 const SPIN_FADE: f64 = 0.05 * 0.05 * 0.05 * 0.05;
 
-/// How often the spin takes up what the fade has left of it: the error of the share that it sees is
-/// raised to the third power.
+/// Times that the spin takes up what the fade has left of it: the error of the share that it sees
+/// is raised to the third power.
 const SPIN_PASSES: usize = 2;
 
-/// What the first sweep sums over pairs.
+/// Sums of the first sweep over pairs.
 pub(super) struct PlainSums<V> {
     /// `L₀` (1/s).
     pub(super) gradient: [V; 9],

@@ -5,7 +5,7 @@ use crate::neighbourhood::{Neighbourhood, Separation, gather, gather_all, record
 use numerics::kernel::PairScale;
 use numerics::lanes::{LANES, Lanes};
 
-/// What a particle shows to its neighbours of its stress and its correction.
+/// Record of the stress and the correction of a particle that its neighbours read.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct NormalisedRecord {
