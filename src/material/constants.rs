@@ -8,7 +8,7 @@ use super::{Material, ThermalConstants};
 pub struct Constant {
     /// Its key below `[material.NAME]`: `eos.mie_gruneisen.c0`.
     pub key: String,
-    /// What it is.
+    /// Its value.
     pub value: Value,
 }
 

@@ -1,4 +1,4 @@
-//! How laws declare their constants: each once, with its unit.
+//! Declaration of the constants of laws: each once, with its unit.
 
 /// The value of a constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,7 +12,7 @@ pub enum Value {
 /// Constants of a law by their keys in the input.
 pub type Constants = Vec<(&'static str, Value)>;
 
-/// What has constants that the input gives.
+/// Object with constants that the input gives.
 pub trait Listed {
     /// The constants, in the order of the input.
     fn constants(&self) -> Constants;

@@ -66,7 +66,7 @@ macro_rules! point_fields {
             damage: Scalar, Memory;
             /// Elastic energy that failure has released so far (J/kg).
             failure_energy: Scalar, Memory;
-            /// How far matter that softens before it fails is on its way to the onset of that.
+            /// Progress to the onset of softening, for material that softens before it fails.
             failure_onset: Scalar, Memory;
             /// Flaws that have become active.
             flaws: Scalar, Memory;

@@ -28,11 +28,11 @@ pub struct Thermal {
     reference_density: f64,
     /// `e_c` (J/kg) and its slope by interval, `de_c/dn`, at each node.
     cold: Vec<[f64; 2]>,
-    /// What `e_c` (J/kg) is nowhere below.
+    /// Lower bound of `e_c` (J/kg).
     least_cold: f64,
 }
 
-/// What a user states of a material's heat.
+/// Constants that a user states of a material's heat.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThermalConstants {
     /// Specific heat `c_v` (J/(kg K)).
@@ -171,8 +171,8 @@ impl Thermal {
     }
 }
 
-/// What the cubics between all nodes are nowhere below: a cubic lies within its Bézier points, here those of an
-/// interval, less some units of their last place.
+/// Lower bound of the cubics between all nodes: a cubic lies within its Bézier points, here those
+/// of an interval, less some units of their last place.
 fn least(nodes: &[[f64; 2]]) -> f64 {
     let points = nodes.windows(2).flat_map(|pair| {
         let [[e0, d0], [e1, d1]] = [pair[0], pair[1]];
@@ -191,8 +191,8 @@ fn between([[e0, d0], [e1, d1]]: [[f64; 2]; 2], t: f64) -> f64 {
     e0 * s + e1 * t + t * s * ((d0 - rise) * s - (d1 - rise) * t)
 }
 
-/// How much denser (kg/m³) than its mean torn matter is, whose pressure a cut-off has raised by
-/// `excess` (Pa): voids hold no energy, so the cold energy is that of the matter between them,
+/// Excess density (kg/m³) over the mean of torn material whose pressure a cut-off has raised by
+/// `excess` (Pa). Voids hold no energy, so the cold energy is that of the material between them,
 /// whose pressure is the cut-off. Exact where pressure is linear in density.
 pub(super) fn opening(excess: f64, dp_drho: f64) -> f64 {
     if excess > 0.0 && dp_drho > 0.0 {

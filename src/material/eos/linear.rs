@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use super::{EquationOfState, PointResponse};
 
-/// How the pressure of [`Linear`] depends on the density.
+/// Dependence of the pressure of [`Linear`] on the density.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LinearForm {

@@ -60,7 +60,7 @@ law! {
     }
 }
 
-/// Where the numerator N of a [`MieGruneisen`] stops to grow; the same for all points.
+/// End of the growth of the numerator N of a [`MieGruneisen`]; the same for all points.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     mu_n: f64,

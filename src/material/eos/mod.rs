@@ -33,7 +33,7 @@ pub trait EquationOfState: Listed {
     /// calls slow down those that have no need of them.
     const APART: bool = false;
 
-    /// What is wrong with constants that are each within their range.
+    /// Contradiction of constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
         None
     }

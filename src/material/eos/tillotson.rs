@@ -52,7 +52,7 @@ law! {
     }
 }
 
-/// What the branches share at one state.
+/// Terms that the branches share at one state.
 struct Shared {
     rho0: f64,
     rho: f64,

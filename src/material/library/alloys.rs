@@ -1,6 +1,6 @@
 //! More alloys of shields, projectiles and armour, and lead.
 //!
-//! Where a source has been read in another program's files only, its line says so; "not checked"
+//! The line of a source says so if it has been read in another program's files only; "not checked"
 //! means that the paper itself has not been at hand.
 
 use super::heat;

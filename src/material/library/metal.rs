@@ -1,4 +1,4 @@
-//! What records of metals are made from: Mie–Grüneisen with a strength.
+//! Parts of the records of metals: Mie–Grüneisen with a strength.
 
 use super::Parts;
 use crate::{

@@ -8,7 +8,7 @@ use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
 /// One material of the library.
 struct Record {
     name: &'static str,
-    /// What it is, in a line.
+    /// Description, in a line.
     title: &'static str,
     make: fn() -> Parts,
     /// Keys, or what they begin with, and where their numbers come from; the first that fits
@@ -37,7 +37,7 @@ mod metals;
 mod paper;
 mod polymers;
 
-/// What a record makes its material from.
+/// Parts from which a record makes its material.
 struct Parts {
     /// kg/m³
     density: f64,
@@ -86,13 +86,13 @@ pub fn find(name: &str) -> Option<Material> {
     })
 }
 
-/// What the material of this name is, in a line.
+/// Description of the material of this name, in a line.
 #[must_use]
 pub fn title(name: &str) -> Option<&'static str> {
     record(name).map(|record| record.title)
 }
 
-/// Where the number at a key (`eos.mie_gruneisen.c0`) of the material of this name comes from.
+/// Source of the number at a key (`eos.mie_gruneisen.c0`) of the material of this name.
 #[must_use]
 pub fn source(name: &str, key: &str) -> Option<&'static str> {
     let fits = |(begin, _): &&(&str, &str)| key.starts_with(begin);

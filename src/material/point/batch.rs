@@ -8,7 +8,7 @@ pub const LANES: usize = 8;
 /// One value for each point of a batch.
 pub type Lanes = [f64; LANES];
 
-/// What a batch holds of a field.
+/// Type of a field in a batch.
 #[macro_export]
 macro_rules! point_lanes {
     (Scalar) => {
@@ -50,7 +50,7 @@ point_fields!(point_batch);
 
 /// The values of a batch in one field, one lane of them at a time.
 pub trait PointField {
-    /// What one point holds.
+    /// Value of one point.
     type Value;
     /// Zeros.
     const ZERO: Self;

@@ -1,40 +1,40 @@
-//! What damage does, whichever law of failure advances it.
+//! Effects of damage, whichever law of failure advances it.
 //!
-//! Matter whose damage D has reached one has failed. With the default [`FailureOptions`] it bears pressure and
-//! nothing else; where damage scales, shear and tension are `1 − D` of those of the matter between
-//! the cracks already before. What damage takes in a step it takes of the stress at the end of that
-//! step, whose elastic energy stays in the matter as heat and is told by
+//! Material whose damage D has reached one has failed. With the default [`FailureOptions`] it bears
+//! pressure and nothing else; where damage scales, shear and tension are `1 − D` of those of the
+//! material between the cracks already before. Damage takes its share in a step of the stress at
+//! the end of that step. The elastic energy of this share stays in the material as heat:
 //!
 //! ```text
 //! Δe = [p²/(2 K ρ) + S:S/(4 G ρ)] ΔD/(1 − D)²        (p < 0 in the first term)
 //! ```
 //!
-//! with the stress and the moduli of that moment; for matter that fails at once ΔD = 1 and D = 0.
+//! with the stress and the moduli of that moment; for material that fails at once ΔD = 1 and D = 0.
 //! This is exact where moduli are constant and strains small, and neglects that both change with
 //! the strain otherwise.
 //!
-//! **Softening.** With a fracture energy `G_f` (J/m²) a law of failure tells the onset of it, not
+//! **Softening.** With a fracture energy `G_f` (J/m²) a law of failure gives the onset of it, not
 //! its end: from then on
 //!
 //! ```text
 //! dD/dt = L ⟨σ̄ : D⟩/(2 G_f)
 //! ```
 //!
-//! where σ̄ is the stress of the matter between the cracks, without its pressure in compression, D
-//! the rate of deformation and L the size of the particle. Whatever the path, the matter of a
+//! where σ̄ is the stress of the material between the cracks, without its pressure in compression, D
+//! the rate of deformation and L the size of the particle. Whatever the path, the material of a
 //! particle has taken `∫ (1 − D) σ̄ : D dt = G_f/L` when it has failed, that is `G_f` over the area
 //! of a crack through it, however large particles are; at a limit of tension expansion alone counts, while
 //! the limit holds the pressure ([`Spall`](super::Spall)). Crack bands of Bažant & Oh (1983), *Crack
 //! band theory for fracture of concrete*, Mater. Struct. 16, 155.
 //!
-//! Where tension alone is lost, the principal stresses of failed matter are zero at most: it still
+//! Failed material that has lost tension alone has principal stresses of zero at most: it still
 //! bears pressure in the other directions, and shear. The strain of open cracks is in the density
-//! and not in the matter, so the pressure of the equation of state is that of closed ones; with open
-//! ones it is the largest principal value of S, for which no direction is pulled.
+//! and not in the material, so the pressure of the equation of state is that of closed ones; with
+//! open ones it is the largest principal value of S, for which no direction is pulled.
 //!
 //! Spray that flies apart is grains and void. Its density follows the velocity gradient, down to a tenth of
 //! the reference state's: a particle alone has .145 of that by its own kernel (three dimensions, h = 1.3 Δp),
-//! so that sums cannot tell less. Without an end, the volume m/ρ by which a particle counts in its
+//! so that sums cannot give less. Without an end, the volume m/ρ by which a particle counts in its
 //! neighbours' sums grows for ever, and their gradients with it.
 
 use super::failure::{Effect, FAILED, FailureOptions, Molten};
@@ -110,7 +110,7 @@ pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
     }
 }
 
-/// What has failed cannot fail more, however far a step has taken it.
+/// Limits damage: failed material cannot fail more, however far a step has taken it.
 #[inline(always)]
 pub(super) fn end(point: &mut PointBatch) {
     for damage in &mut point.damage {

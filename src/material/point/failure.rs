@@ -1,4 +1,4 @@
-//! How a material fails: its laws of failure together, and what they have in common.
+//! Failure of a material: its laws of failure together, and their common options.
 
 use serde::Deserialize;
 
@@ -8,7 +8,7 @@ use numerics::counter::exponential;
 /// Damage of matter that has failed.
 pub const FAILED: f64 = 1.0;
 
-/// What failed matter has lost.
+/// Loss of failed material.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
@@ -33,7 +33,7 @@ impl Effect {
     }
 }
 
-/// What molten matter does where the material follows the temperature and may fail.
+/// Behaviour, once molten, of material that follows the temperature and may fail.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Molten {
@@ -55,19 +55,19 @@ impl Molten {
     }
 }
 
-/// What the laws of failure of a material have in common.
+/// Common options of the laws of failure of a material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailureOptions {
-    /// What failed matter has lost.
+    /// Loss of failed material.
     pub effect: Effect,
     /// Energy that opens a crack, `G_f` (J/m²): from its strength on, matter softens until it has
     /// taken this. Zero if it fails at once.
     pub fracture_energy: f64,
     /// Weibull modulus by which the failure strains of particles scatter; zero if they do not.
     pub scatter: f64,
-    /// What draws of scatter and flaws begin with.
+    /// First word of the draws of scatter and flaws.
     pub seed: u32,
-    /// What molten matter does.
+    /// Behaviour of molten material.
     pub molten: Molten,
     /// Dimension of the model: by it the mass of a particle tells its size.
     pub dimension: u8,
@@ -91,7 +91,7 @@ impl FailureOptions {
         self.fracture_energy > 0.0
     }
 
-    /// What damage takes of shear and tension.
+    /// Share of shear and tension that damage takes.
     #[inline(always)]
     #[must_use]
     pub fn taken(&self, damage: f64) -> f64 {
@@ -117,7 +117,7 @@ impl FailureOptions {
         }
     }
 
-    /// What differs from the usual, by the keys of the input.
+    /// Options that differ from the default, by the keys of the input.
     pub(super) fn constants(&self) -> Constants {
         let default = Self::DEFAULT;
         let rows = [
@@ -162,11 +162,11 @@ const SCATTER: u64 = 0x5343_4154;
 /// Makes [`Failure`](super::Failure) of its table.
 macro_rules! failure_laws {
     ($( $(#[doc = $doc:literal])+ $key:ident: $law:ident; )+) => {
-        /// How a material fails.
+        /// Laws of failure of a material.
         #[derive(Debug, Clone, Copy, Default, PartialEq)]
         pub struct Failure {
             $( $(#[doc = $doc])+ pub $key: Option<$law>, )+
-            /// What these have in common.
+            /// Their common options.
             pub options: FailureOptions,
         }
 

@@ -42,7 +42,7 @@ const RADIUS: f64 = 0.620_350_490_899_400_1;
 /// Key of the draws of flaws.
 const FLAWS: u64 = 0x464C_4157;
 
-/// What a crack crosses when its particle fails.
+/// Extent of a crack when its particle fails.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Crosses {
@@ -64,7 +64,7 @@ impl Crosses {
     }
 }
 
-/// How many flaws are active.
+/// Number of active flaws.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Flaws {
@@ -95,9 +95,9 @@ law! {
         m: "",
         /// Crack speed over the longitudinal sound speed of the reference state.
         crack_speed: "",
-        /// What a crack crosses.
+        /// Extent of a crack.
         crosses: Crosses,
-        /// How many flaws are active.
+        /// Number of active flaws.
         flaws: Flaws,
         /// Flaws of a particle: damage is `n/N` at most as long as n of N are active. Zero for no
         /// such limit.
@@ -142,7 +142,7 @@ impl GradyKipp {
     }
 }
 
-/// How much later than the one before the flaw of this number becomes active, in flaws expected.
+/// Delay of the flaw of this number after the one before, in flaws expected.
 #[inline(always)]
 fn flaw(seed: u32, id: u64, number: f64) -> f64 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 1000 at most

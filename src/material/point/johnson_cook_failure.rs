@@ -13,7 +13,7 @@
 //! 31; the power form Børvik, Hopperstad, Berstad & Langseth (2001), *A computational model of
 //! viscoplasticity and ductile damage for impact and penetration*, Eur. J. Mech. A 20, 685.
 //!
-//! What the fit leaves open:
+//! Rules that the fit leaves open:
 //!
 //! - `ε_f` is at least `least_strain`: fits with a negative D₁ fall below zero where tension is high.
 //! - Beyond η = 1.5 the fit does not hold. With a `spall_stress` `σ_s`, `ε_f` falls from there linearly
@@ -34,7 +34,7 @@ const HIGH_TENSION: f64 = 1.5;
 /// Largest triaxiality that counts.
 const MOST: f64 = 3.0;
 
-/// How the failure strain follows the strain rate.
+/// Dependence of the failure strain on the strain rate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RateForm {
@@ -71,7 +71,7 @@ law! {
         d5: "",
         /// Reference strain rate (1/s).
         reference_rate: "1/s",
-        /// How the failure strain follows the rate.
+        /// Dependence of the failure strain on the rate.
         rate_form: RateForm,
         /// Least failure strain.
         least_strain: "",

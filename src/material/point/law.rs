@@ -1,4 +1,4 @@
-//! What a law of the material point is, and how those of a material act together.
+//! Interface of a law of the material point, and the way those of a material act together.
 
 use super::failure::FailureOptions;
 use super::{LANES, Lanes, PointBatch};
@@ -10,7 +10,7 @@ use crate::declare::Listed;
 pub struct Contradiction {
     /// Keys at fault, the first one first.
     pub keys: &'static [&'static str],
-    /// What is wrong with them.
+    /// Statement of the contradiction.
     pub title: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub trait Law: Listed {
         Self::FOLLOWS_STATE
     }
 
-    /// What is wrong with constants that are each within their range.
+    /// Contradiction of constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
         None
     }
@@ -104,7 +104,7 @@ pub trait Law: Listed {
     fn open(&self, _point: &mut PointBatch, _now: &Conditions) {}
 }
 
-/// What the laws of an update have in common and tell each other.
+/// Conditions that the laws of an update have in common and pass to each other.
 #[derive(Debug, Clone, Copy)]
 pub struct Conditions {
     /// Step (s).
@@ -113,22 +113,22 @@ pub struct Conditions {
     pub reference_density: f64,
     /// Temperatures (K), where a law follows them; those of the reference state without heat.
     pub temperature: Lanes,
-    /// What temperatures are judged by.
+    /// Constants by which temperatures are judged.
     pub thermal: ThermalConstants,
     /// Shear moduli (Pa): at first those of the reference state.
     pub shear_modulus: Lanes,
-    /// What is left of the flow stress: at first 1, all of it.
+    /// Share of the flow stress that is left: at first 1, all of it.
     pub softening: Lanes,
     /// Reference shear modulus G (Pa).
     pub reference_shear_modulus: f64,
     /// Reference bulk modulus K (Pa).
     pub bulk_modulus: f64,
-    /// What damage had left of stress at the beginning of the step: stress over this is that of
-    /// the matter between the cracks.
+    /// Share of stress that damage had left at the beginning of the step: stress over this is that
+    /// of the material between the cracks.
     pub kept: Lanes,
     /// Equivalent plastic strain of the step.
     pub plastic_increment: Lanes,
-    /// How the material fails.
+    /// Options of the failure.
     pub options: FailureOptions,
 }
 

@@ -19,7 +19,7 @@ use super::failure::FAILED;
 use super::{Conditions, LANES, Law, PointBatch, damage};
 use crate::at_least;
 
-/// What becomes of matter beyond the limit of [`Spall`].
+/// Fate of material beyond the limit of [`Spall`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AfterSpall {
@@ -49,7 +49,7 @@ law! {
     Spall {
         /// Lowest pressure (Pa), negative.
         pressure: "Pa",
-        /// What becomes of matter beyond it.
+        /// Fate of material beyond it.
         after: AfterSpall,
     }
 }
@@ -95,9 +95,9 @@ impl Law for Spall {
         }
     }
 
-    /// Where matter softens, pressure is held at the limit, of which damage takes a share; while it is,
-    /// expansion opens cracks. Shear opens none: matter at the limit flows as it did before. Beyond the
-    /// onset of another law all work counts already.
+    /// Pressure of softening material is held at the limit, of which damage takes a share. While it
+    /// is, expansion opens cracks. Shear opens none: material at the limit flows as it did before.
+    /// Beyond the onset of another law all work counts already.
     #[inline(always)]
     fn open(&self, point: &mut PointBatch, now: &Conditions) {
         if !self.follows_state() {
