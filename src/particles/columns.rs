@@ -2,7 +2,7 @@
 
 use bitflags::bitflags;
 
-/// What one particle holds in a field.
+/// Kind of the value of one particle in a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FieldKind {
     /// One `f64`.
@@ -57,7 +57,7 @@ impl FieldKind {
     }
 }
 
-/// What becomes of a value behind a symmetry plane.
+/// Rule for a value behind a symmetry plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mirror {
     /// It stays.
@@ -83,7 +83,7 @@ pub enum Life {
     Scratch,
 }
 
-/// What snapshots do with a field.
+/// Use of a field in snapshots.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Output {
     /// In snapshots by default.

@@ -1,4 +1,4 @@
-//! What the rows of the table of fields declare: the fields' names, the table and the store.
+//! Declarations by the rows of the table of fields: names of the fields, the table and the store.
 
 macro_rules! kind_type {
     (Scalar) => {

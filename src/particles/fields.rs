@@ -8,13 +8,13 @@ use super::columns::{FieldKind, HaloPhase, Life, Mirror, Output, Owner};
 /// One row of the table.
 #[derive(Debug, Clone, Copy)]
 pub struct FieldInfo {
-    /// Which field.
+    /// The field.
     pub id: FieldId,
     /// Its name in the store, in files and on the command line.
     pub name: &'static str,
     /// Type.
     pub kind: FieldKind,
-    /// What becomes of it behind a symmetry plane.
+    /// Rule for it behind a symmetry plane.
     pub mirror: Mirror,
     /// SI unit; empty for none.
     pub unit: &'static str,
@@ -24,7 +24,7 @@ pub struct FieldInfo {
     pub life: Life,
     /// When halo particles get it.
     pub halo: HaloPhase,
-    /// What snapshots do with it.
+    /// Its use in snapshots.
     pub output: Output,
     /// Options that have use for it; empty for a field of every case.
     pub owner: Owner,
@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(places, ["position", "reference_position"]);
     }
 
-    /// What stays of a frozen particle is held in every case that may freeze one.
+    /// Remains of a frozen particle are held in every case that may freeze one.
     #[test]
     fn remains_are_in_every_store() {
         let remains = names(|field| field.kept);

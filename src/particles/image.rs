@@ -38,13 +38,13 @@ impl Image {
     }
 }
 
-/// What an own particle of a rank may meet beside the other own ones.
+/// Images that an own particle of a rank may meet beside the other own ones.
 #[derive(Debug, Clone, Copy)]
 pub struct HaloImages<'a> {
     /// The images of owned particles behind symmetry planes, and the halo particles with theirs.
     pub images: &'a [Image],
-    /// How many of them, the first ones, stand below this rank's own particles as far as ranks can say: a hint for
-    /// their sort.
+    /// Number of the first of them that are below this rank's own particles as far as ranks can
+    /// say: a hint for their sort.
     pub below: usize,
     /// The symmetry planes.
     pub mirrors: &'a Mirrors,

@@ -90,7 +90,7 @@ impl Inactive {
         PART * self.parts.len()
     }
 
-    /// How many of so many owned particles are active.
+    /// Number of active ones of so many owned particles.
     #[must_use]
     pub fn count_active(&self, owned: usize) -> usize {
         owned - PART * self.count

@@ -10,7 +10,7 @@ pub struct Mirrors {
     planes: [Option<f64>; 3],
 }
 
-/// What images behind symmetry planes do to one particle.
+/// Force of images behind symmetry planes on one particle.
 #[derive(Debug, Clone, Copy)]
 pub struct MirrorForce {
     /// Index of the particle.
@@ -33,7 +33,7 @@ impl Mirrors {
         mirrors
     }
 
-    /// Where the plane normal to an axis cuts it (m), if there is one.
+    /// Coordinate (m) of the plane normal to an axis, if there is one.
     #[must_use]
     pub fn plane(&self, axis: usize) -> Option<f64> {
         self.planes[axis]

@@ -63,7 +63,7 @@ macro_rules! points {
     (($d:tt) $( $(#[doc = $doc:literal])+ $name:ident: $kind:ident, $role:ident; )+) => {
         const _: () = { $( check!($role $name); )+ };
 
-        /// What the material's update reads and writes of the particles.
+        /// Fields of the particles that the material's update reads and writes.
         pub struct MaterialPoints<'a> {
             /// Index of the body.
             pub body: &'a [u32],
@@ -91,7 +91,7 @@ macro_rules! points {
                 !self.damage.is_empty() && unsafe { *self.damage.slot(i) >= FAILED }
             }
 
-            /// What the particles `slot` hold, in this order; zero for what a material answers.
+            /// Values of the particles `slot`, in this order; zero for what a material answers.
             ///
             /// # Safety
             /// No other thread may write to these particles.

@@ -1,4 +1,4 @@
-//! What particles remember of their history and no step needs: a sum, and extremes.
+//! Records of the history of particles that no step needs: a sum, and extremes.
 
 use super::scatter::Scatter;
 

@@ -1,10 +1,10 @@
-//! How a walk over the table of fields chooses rows.
+//! Choice of rows for a walk over the table of fields.
 
 use super::columns::{HaloPhase, Life, Output, Owner};
 use super::fields::FieldInfo;
 
-/// Which rows of the table a walk takes: a value of a column, a set of which a row has any, or
-/// a question to the row ([`FieldInfo::leaves`]).
+/// Choice of the rows of the table that a walk takes: a value of a column, a set of which a row
+/// has any, or a question to the row ([`FieldInfo::leaves`]).
 pub trait Select: Copy {
     /// True if the walk takes this row.
     fn takes(self, field: &FieldInfo) -> bool;

@@ -233,7 +233,7 @@ pub fn gauge_names() -> impl Iterator<Item = &'static str> {
 pub const STRESS: &str = "stress";
 /// A quantity that snapshots derive from the stress.
 pub const VON_MISES_STRESS: &str = "von_mises_stress";
-/// What snapshots tell of fragments.
+/// A quantity of fragments in snapshots.
 pub const FRAGMENT: &str = "fragment";
 /// A quantity that snapshots derive from density and specific energy.
 pub const TEMPERATURE: &str = "temperature";

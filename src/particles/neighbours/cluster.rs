@@ -17,7 +17,7 @@ pub struct Cluster {
     pub upper: [f64; 3],
 }
 
-/// What is among the neighbours of a cluster.
+/// Kinds that are among the neighbours of a cluster.
 #[allow(clippy::struct_excessive_bools, reason = "independent of each other")]
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Among {

@@ -23,7 +23,7 @@ pub struct Chunk {
     indices: Range<usize>,
     gatherer: Gatherer,
     lists: Lists,
-    /// What [`ClusterLists::part`] has taken out of them; empty without self-contact.
+    /// Neighbours that [`ClusterLists::part`] has taken out of them; empty without self-contact.
     split: Split,
 }
 
@@ -140,7 +140,7 @@ impl Vectorised for Build<'_> {
 
 /// Clusters in a row that are looked at together, whether they rest.
 const RUN: usize = 8;
-/// How long they are together at most, in ranges of lists: columns have gaps where some are inactive.
+/// Longest extent of a run, in ranges of lists: columns have gaps where some are inactive.
 const LONG: f64 = 5.0;
 
 /// Such runs of clusters, no longer (m) than that along any axis if there is more than one in them.
@@ -154,7 +154,7 @@ fn runs(mut left: &[Cluster], longest: f64) -> impl Iterator<Item = &[Cluster]> 
     })
 }
 
-/// How many of the first clusters make a run.
+/// Number of the first clusters that make a run.
 #[inline(always)]
 fn run_of(clusters: &[Cluster], longest: f64) -> usize {
     let (mut lower, mut upper) = (clusters[0].lower, clusters[0].upper);
@@ -177,8 +177,8 @@ struct Lister<'a> {
     inflation: f64,
     list: &'a mut Vec<u32>,
     used: usize,
-    /// Where the last cluster began to read a column, by the last bits of the column's indices:
-    /// the next one begins near it.
+    /// Place at which the last cluster began to read a column, by the last bits of the column's
+    /// indices: the next one begins near it.
     hints: [usize; 64],
 }
 
@@ -246,7 +246,7 @@ static SPREAD: [u64; 256] = {
 pub struct ClusterLists {
     chunks: Vec<Chunk>,
     used: usize,
-    /// Where there are stress points, how many groups the bodies form.
+    /// Number of groups that the bodies form, if there are stress points.
     body_groups: Option<usize>,
 }
 

@@ -14,7 +14,7 @@ pub struct ColumnGrid {
     pub along: usize,
     /// The two axes across.
     pub across: [usize; 2],
-    /// Where the cell [`MIDDLE`] begins (m).
+    /// Beginning of the cell [`MIDDLE`] (m).
     origin: [f64; 2],
     /// One less than the periods, which are powers of two.
     masks: [u32; 2],
@@ -23,7 +23,7 @@ pub struct ColumnGrid {
 
 /// Particle spacings across a column.
 const WIDTH_IN_SPACINGS: f64 = 2.0;
-/// Where a column begins, in particle spacings before the first site.
+/// Beginning of a column, in particle spacings before the first site.
 const PHASE: f64 = 0.25;
 /// The cell in which a group begins; positions more than so many away share the outermost cells.
 const MIDDLE: f64 = 2_147_483_648.0;
@@ -71,7 +71,7 @@ impl ColumnGrid {
         self.masks[k] + 1
     }
 
-    /// How many columns after that of the cell `first` along the k-th axis across the column of another cell stands.
+    /// Columns from that of the cell `first` to that of another cell, along the k-th axis across.
     #[inline(always)]
     #[must_use]
     pub fn after(&self, k: usize, first: u32, cell: u32) -> usize {

@@ -1,4 +1,4 @@
-//! Where tasks put what they sort into columns.
+//! Places at which tasks put entries that they sort into columns.
 
 use rayon::prelude::*;
 

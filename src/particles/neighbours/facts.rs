@@ -1,6 +1,6 @@
-//! What the sequence knows of an image.
+//! Facts of an image that the sequence needs.
 
-/// What the sequence needs to know of one image.
+/// Facts of one image that the sequence needs.
 #[derive(Debug, Clone, Copy)]
 pub struct ImageFacts {
     /// Its own position (m), mirrored where it is an image.

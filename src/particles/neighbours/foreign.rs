@@ -28,8 +28,8 @@ pub struct ForeignTable {
     /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
     /// where these have no contact.
     pub group_range: Vec<f64>,
-    /// Where particles of a body are unequal: no pair has a longer range than so many times the sum
-    /// of its smoothing lengths.
+    /// Bound where particles of a body are unequal: no pair has a longer range than so many times
+    /// the sum of its smoothing lengths.
     pub most: Option<f64>,
 }
 
@@ -40,15 +40,15 @@ pub struct ForeignChunk {
 }
 
 thread_local! {
-    /// What a thread works with, for one chunk after the other: what is near and what are strangers.
+    /// Buffers of a thread, for one chunk after the other: images that are near, and strangers.
     static CANDIDATES: RefCell<[Candidates; 2]> = RefCell::default();
 }
 
-/// What may be in range of a receiver, eight images at a time.
+/// Images that may be in range of a receiver, eight at a time.
 #[derive(Debug, Clone, Default)]
 struct Candidates {
     indices: Vec<u32>,
-    /// How many of these there are.
+    /// Number of these.
     used: usize,
     size_classes: Vec<usize>,
     positions: Vec<[F64x8; 3]>,

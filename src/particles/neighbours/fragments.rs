@@ -16,7 +16,7 @@ pub struct Fragment {
     pub mirror_mask: u64,
 }
 
-/// What tells particles of one fragment from strangers.
+/// Facts by which particles of one fragment differ from strangers.
 #[derive(Debug, Clone, Copy)]
 pub struct Membership<'a> {
     /// Fragments of the images, by their indices.

@@ -1,5 +1,5 @@
-//! Which particles share a cluster: eight in a row of a column, and what is left at the ends of
-//! columns with what is left of the next columns. Results do not depend on it, only speed.
+//! Choice of the particles that share a cluster: eight in a row of a column, and those left at the
+//! ends of columns with those left of the next columns. Only speed depends on it, not results.
 
 use std::f64::consts::PI;
 use std::ops::Range;

@@ -10,7 +10,7 @@ pub struct Groups {
     pub of_body: Vec<usize>,
     /// True if a group is a rigid body.
     pub rigid: Vec<bool>,
-    /// How many groups the bodies form.
+    /// Number of groups that the bodies form.
     pub of_bodies: usize,
 }
 

@@ -95,7 +95,7 @@ impl Lists {
         &self.sequence
     }
 
-    /// What each image shows of its motion.
+    /// Motion of each image.
     #[must_use]
     pub fn motion(&self) -> &[MotionRecord] {
         &self.motion
@@ -135,8 +135,8 @@ impl Lists {
         }
     }
 
-    /// What points (m) are best ordered by that are looked up one after the other: their column, and how far along
-    /// it they are, by the first group.
+    /// Key by which points (m) are best ordered that are looked up one after the other: their
+    /// column, and their position along it, by the first group.
     #[must_use]
     pub fn order_of(&self, point: &[f64; 3]) -> [u64; 2] {
         self.sequence.order_of(0, point)

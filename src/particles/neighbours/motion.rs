@@ -1,6 +1,6 @@
-//! What the search and the sums over pairs read of each image.
+//! Record of each image that the search and the sums over pairs read.
 
-/// What a particle shows to its neighbours of its motion: one cache line.
+/// Record of the motion of a particle that its neighbours read: one cache line.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub struct MotionRecord {

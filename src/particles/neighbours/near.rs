@@ -1,4 +1,4 @@
-//! What is near a box: eight images of the sequence at a time.
+//! Images near a box: eight of the sequence at a time.
 
 use super::sequence::{Eight, Sequence};
 use numerics::lanes::{LANES, Lanes};

@@ -1,4 +1,4 @@
-//! What is near a point.
+//! Images near a point.
 
 use super::facts::IMAGE;
 use super::lists::Lists;

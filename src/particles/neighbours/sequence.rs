@@ -28,7 +28,7 @@ pub struct Sequence {
     coordinates: [Vec<f64>; 3],
     lengths: Vec<f64>,
     uniform: bool,
-    /// How many are no particles of this rank themselves.
+    /// Number of images that are no particles of this rank themselves.
     others: usize,
     sorter: Sorter,
 }
@@ -332,8 +332,8 @@ impl Sequence {
         [0, 1, 2].map(|a| self.coordinates[a][index])
     }
 
-    /// What the canonical order of a group goes by before ids and image mirror masks: the column of an image, and
-    /// where it is along that.
+    /// Key of the canonical order of a group before ids and image mirror masks: the column of an
+    /// image, and its position along that.
     #[must_use]
     pub fn rank_in_order(&self, group: usize, index: usize) -> [u64; 2] {
         self.order_of(group, &self.position(index))

@@ -8,7 +8,7 @@ const STEP: f64 = 1.05;
 /// or more times, so that a body has no more classes than these.
 const MOST_CLASSES: f64 = 64.0;
 
-/// How many times larger the sizes of a class of a body are than those of the one before.
+/// Ratio of the sizes of a class of a body to those of the one before.
 fn step(body: &Body) -> f64 {
     let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
     STEP.max(libm::pow(most / least, 1.0 / (MOST_CLASSES - 1.0)))
@@ -77,7 +77,7 @@ impl SizeClasses {
         }
     }
 
-    /// How many there are.
+    /// Number of classes.
     #[must_use]
     pub fn count(&self) -> usize {
         self.body.len()

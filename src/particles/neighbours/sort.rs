@@ -12,7 +12,7 @@ use super::facts::{HALO, ImageFacts, ImageState, MIRROR};
 use super::group::{Group, lay_out};
 use crate::{Image, Scatter};
 
-/// What an image is sorted by inside its column.
+/// Entry of an image in the sort inside its column.
 #[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Entry {

@@ -1,4 +1,4 @@
-//! Which clusters rest among what rests, so that nobody needs their lists.
+//! Clusters that rest among what rests: nobody needs their lists.
 
 use super::cluster::Cluster;
 use super::facts::{ACTIVE, HALO, MOVING};
@@ -13,11 +13,11 @@ const NOT_RESTING: u64 = u64::from_le_bytes([HALO | MOVING | ACTIVE; LANES]);
 pub(super) struct Watch<'a> {
     pub(super) sequence: &'a Sequence,
     pub(super) group: usize,
-    /// How far neighbours of the own group may be (m).
+    /// Largest distance (m) of neighbours of the own group.
     pub(super) far: f64,
     /// `ranges[own * groups + other]`: the longest range (m) of contact between two groups, if there is any contact.
     pub(super) ranges: &'a [f64],
-    /// Where the last box began to read columns, by the last bits of their indices.
+    /// Place at which the last box began to read columns, by the last bits of their indices.
     pub(super) hints: [usize; 64],
 }
 
