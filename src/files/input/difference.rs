@@ -1,5 +1,5 @@
-//! Where two resolved cases differ, key by key: comments, order and formatting are no difference,
-//! nor is another unit for the same quantity.
+//! Differences of two resolved cases, key by key: comments, order and formatting are none, nor is
+//! another unit for the same quantity.
 
 use serde::Deserialize;
 use toml::de::DeTable;

@@ -23,7 +23,7 @@ pub enum Explained {
         key: String,
         /// Its value as TOML.
         value: String,
-        /// Where it stands: `case.toml:12` or `--set`.
+        /// Its place: `case.toml:12` or `--set`.
         place: String,
     },
     /// A key that is not.
@@ -32,7 +32,7 @@ pub enum Explained {
         key: String,
         /// The value that it has then, as TOML, if that is always the same.
         default: Option<String>,
-        /// What is so, in words.
+        /// Consequence of its absence, in words.
         said: String,
     },
 }
@@ -76,13 +76,13 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// What a schema of one thing refers to.
+    /// Schema to which that of one thing refers.
     fn resolved(&self, schema: &'a Schema) -> &'a Schema {
         let inner = schema.get("allOf").map_or(schema, |all| &all[0]);
         referred(inner).map_or(inner, |name| &self.definitions[name])
     }
 
-    /// What a schema says by a word, or one of its ways of typing does.
+    /// Part of a schema, or of one of its ways of typing, under a word.
     fn part(&self, schema: &'a Schema, word: &str) -> Option<&'a Schema> {
         let schema = self.resolved(schema);
         let ways = schema.get("anyOf").and_then(Schema::as_array);

@@ -8,7 +8,7 @@ use std::path::Path;
 /// Opens a regular file; gives its length (bytes) too.
 ///
 /// # Errors
-/// What the system says; [`io::ErrorKind::InvalidInput`] for a pipe, a device or a folder.
+/// That of the system; [`io::ErrorKind::InvalidInput`] for a pipe, a device or a folder.
 pub fn open_regular(path: &Path) -> io::Result<(File, u64)> {
     // Without the flag the opening of a pipe waits for somebody to write to it.
     let file = File::options()
@@ -47,7 +47,7 @@ pub fn content(path: &Path, longest: u64, what: &str) -> io::Result<Vec<u8>> {
     Ok(content)
 }
 
-/// What it is, if it is no regular file.
+/// Name of a kind of file, if it is no regular file.
 fn not_regular(kind: FileType) -> Option<&'static str> {
     if kind.is_file() {
         None

@@ -11,7 +11,7 @@ use toml::Spanned;
 
 use super::quantity::{Kind, Placed, Quantity};
 
-/// What is read from a table alone.
+/// Type that is read from a table alone.
 pub trait Table: Sized {
     /// Reads the entries of a table.
     fn from_map<'de, A: MapAccess<'de>>(map: A) -> Result<Self, A::Error>;

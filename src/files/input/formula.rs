@@ -56,7 +56,7 @@ fn nested(range: Range<usize>) -> Diagnostic {
 
 struct Reader<'a> {
     text: &'a str,
-    /// How far it has been read.
+    /// Bytes of it that have been read.
     at: usize,
     code: Code,
     nested: usize,
@@ -78,7 +78,7 @@ impl<'a> Reader<'a> {
         Some(next)
     }
 
-    /// What stands where something else should.
+    /// Fault of the next word, which should be something else.
     fn unexpected(&mut self, expected: &str) -> Diagnostic {
         let Some(next) = self.peek() else {
             let last = self.text.char_indices().last().map_or(0, |(at, _)| at);

@@ -73,7 +73,7 @@ fn collect<'s>(
     }
 }
 
-/// What a key holds that can be nothing but a table.
+/// Keys below a key that can hold nothing but a table.
 fn schema_of_table<'s>(value: &'s Value, all: &'s Value) -> &'s Value {
     referred(&value["allOf"][0])
         .map_or(&Value::Null, |name| &all["definitions"][name]["properties"])

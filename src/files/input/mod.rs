@@ -57,7 +57,7 @@ pub enum InputError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says, or that it is no regular file or too long.
+        /// Error of the system, or that it is no regular file or too long.
         cause: std::io::Error,
     },
     /// The file is no text.

@@ -9,7 +9,7 @@ use model::readable::is_printable;
 /// Longest name and longest title, in characters.
 const LONGEST_NAME: usize = 64;
 const LONGEST_TITLE: usize = 200;
-/// What a name may have beside letters and digits.
+/// Characters that a name may have beside letters and digits.
 const MARKS: &str = " -_.+()";
 
 /// Complains unless a name is safe wherever it is written: letters and digits of any script and

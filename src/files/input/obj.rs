@@ -35,7 +35,7 @@ const CURVED: &[&str] = &[
 /// The triangles of a content, in its own units. Faces with more corners are cut into triangles.
 ///
 /// # Errors
-/// What is wrong, with the line.
+/// The fault, with the line.
 pub fn triangles(bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String> {
     let mut places: Vec<[f64; 3]> = Vec::new();
     let mut soup = Vec::new();

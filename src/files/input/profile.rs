@@ -9,7 +9,7 @@ use super::quantity::{Kind, PLAIN, TextVisitor, expected};
 /// A constant or a formula, as typed, of a kind of quantity.
 #[derive(Debug)]
 pub struct ProfileParams<K> {
-    /// What stands between the quotes.
+    /// Text between the quotes.
     pub text: String,
     kind: PhantomData<K>,
 }

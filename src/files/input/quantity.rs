@@ -46,10 +46,10 @@ pub trait Kind {
     const POWERS: Powers;
     /// With its article, for messages.
     const NAME: &'static str;
-    /// How to write one.
+    /// Example of one.
     const EXAMPLE: &'static str;
-    /// No value is as large, in SI units, and why: a slip in a number or in its unit is told before
-    /// it makes infinities.
+    /// No value is as large, in SI units, and why: a slip in a number or in its unit is reported
+    /// before it makes infinities.
     const BEYOND: (f64, &'static str);
 }
 
@@ -183,7 +183,7 @@ impl<'de> Deserialize<'de> for Extent {
 
 /// Reads a string with a unit, or the plain number zero.
 pub(super) struct TextVisitor<T> {
-    /// What is expected, for messages.
+    /// Expected text, for messages.
     pub(super) expected: fn() -> String,
     /// Makes what is wanted of a text.
     pub(super) read: fn(&str) -> Result<T, String>,
@@ -222,7 +222,7 @@ impl<T> Visitor<'_> for TextVisitor<T> {
     }
 }
 
-/// What a key of a kind wants, or something else.
+/// Text that a key of a kind expects, or something else.
 pub(super) fn expected<K: Kind>(or: &str) -> String {
     if K::POWERS == PLAIN {
         return format!("{}, such as {}{or}", K::NAME, K::EXAMPLE);

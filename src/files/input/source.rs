@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-/// What is wrong, and where.
+/// A fault, and its place.
 #[derive(Debug)]
 pub struct Diagnostic {
     /// Bytes in the address space of [`Sources`].
@@ -16,7 +16,7 @@ pub struct Diagnostic {
     pub title: String,
     /// A few words beside the caret; may be empty.
     pub label: String,
-    /// What to do, if it is not plain from the title.
+    /// Remedy, if it is not plain from the title.
     pub help: Option<String>,
 }
 

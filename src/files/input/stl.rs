@@ -9,7 +9,7 @@ const TRIANGLE: usize = 50;
 /// The triangles of a content, in its own units.
 ///
 /// # Errors
-/// What is wrong.
+/// The fault.
 pub fn triangles(mut bytes: Vec<u8>) -> Result<Vec<[[f64; 3]; 3]>, String> {
     prepare(&mut bytes)?;
     let mut content = Cursor::new(bytes);

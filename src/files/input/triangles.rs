@@ -11,7 +11,7 @@ use model::SurfaceFile;
 /// Longest file that is read as a surface (bytes): 20 million triangles of a binary STL file.
 const LONGEST: u64 = 1_000_000_000;
 
-/// How a file holds triangles; named as the keys are.
+/// Format of a file of triangles; named as the keys are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Stereolithography.
@@ -28,7 +28,7 @@ impl Format {
 /// Reads the triangles of a file, in its own units.
 ///
 /// # Errors
-/// What is wrong, as the end of "cannot take the surface `file`: …"; of
+/// The fault, as the end of "cannot take the surface `file`: …"; of
 /// [`io::ErrorKind::NotFound`] if there is no such file.
 pub fn read(path: &Path, format: Format) -> io::Result<(Vec<[[f64; 3]; 3]>, SurfaceFile)> {
     let bytes = file::content(path, LONGEST, "a surface")?;

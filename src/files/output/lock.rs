@@ -346,7 +346,7 @@ mod tests {
         assert!(lock.warnings[0].contains("elsewhere"));
     }
 
-    /// Where a file system has no locks, the process id decides.
+    /// The process id decides on a file system without locks.
     #[test]
     fn without_locks_the_file_decides() {
         let here = holder("a", 1);

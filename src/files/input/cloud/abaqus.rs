@@ -86,7 +86,7 @@ impl Block {
     }
 }
 
-/// What lines of data belong to.
+/// Owner of the lines of data that follow.
 #[derive(Debug, Clone)]
 enum Section {
     Nodes,
@@ -113,7 +113,7 @@ struct Reader {
 /// Reads an input file.
 ///
 /// # Errors
-/// What is wrong, with its line.
+/// The fault, with its line.
 pub fn read(text: &str) -> Result<Mesh, Fault> {
     let mut reader = Reader {
         blocks: vec![Block::default()],

@@ -13,7 +13,7 @@ use super::{Fault, Request, Table};
 use model::Quantity;
 use model::units;
 
-/// What a line with the units of the columns begins with.
+/// Beginning of a line with the units of the columns.
 const UNITS: &str = "# units:";
 /// Most columns, and most parts that one may name.
 const MOST_COLUMNS: usize = 10_000;
@@ -37,7 +37,7 @@ struct Head {
 /// Reads a table of particles.
 ///
 /// # Errors
-/// What is wrong, with its line.
+/// The fault, with its line.
 pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     let delimiter = delimiter(bytes);
     let mut reader = ReaderBuilder::new()
@@ -162,7 +162,7 @@ impl Parts {
     }
 }
 
-/// What parts the values of the first line that is no comment.
+/// Delimiter of the values of the first line that is no comment.
 fn delimiter(bytes: &[u8]) -> u8 {
     let mut lines = bytes.split(|&b| b == b'\n').take(1000);
     let is_head = |line: &&[u8]| !line.starts_with(b"#") && !line.trim_ascii().is_empty();
@@ -271,7 +271,7 @@ fn columns(head: &Head, request: &Request) -> Result<Vec<Column>, Fault> {
     Ok(columns)
 }
 
-/// Where the components of a quantity stand.
+/// Columns of the components of a quantity.
 fn places(
     head: &Head,
     quantity: Quantity,

@@ -16,7 +16,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("ELEMENT_SPH_", "only plain `*ELEMENT_SPH` is read"),
 ];
 
-/// What a section holds.
+/// Content of a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Section {
     Nodes,
@@ -32,7 +32,7 @@ enum Section {
 /// Reads a keyword file.
 ///
 /// # Errors
-/// What is wrong, with its line.
+/// The fault, with its line.
 pub fn read(text: &str) -> Result<Mesh, Fault> {
     let mut reader = Reader::default();
     let mut section = None;
@@ -69,7 +69,7 @@ pub fn read(text: &str) -> Result<Mesh, Fault> {
     Ok(reader.mesh)
 }
 
-/// What a keyword begins.
+/// Section that a keyword begins.
 fn begin(name: &str) -> Result<Section, String> {
     let bare = name.split(['(', '$']).next().unwrap_or_default().trim();
     if bare.starts_with("KEYWORD") && bare.contains("LONG=") {

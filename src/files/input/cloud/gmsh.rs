@@ -25,7 +25,7 @@ struct Reader {
 /// Reads a mesh.
 ///
 /// # Errors
-/// What is wrong, with its line.
+/// The fault, with its line.
 pub fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     let head = of(&bytes[..bytes.len().min(200)]).into_owned();
     let mut first = Words::of(&head);

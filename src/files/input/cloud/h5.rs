@@ -12,7 +12,7 @@ use model::Quantity;
 /// Reads the arrays that the input names, and those of the first group with the default names.
 ///
 /// # Errors
-/// What is wrong with the file, or with what is asked of it.
+/// A fault of the file, or of what is asked of it.
 pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
     let file = ArrayFile::open(path).map_err(|cause| cause.to_string())?;
     let mut arrays = Vec::new();

@@ -149,7 +149,7 @@ pub struct Picked {
     pub positions: Vec<[f64; 3]>,
     /// Volumes, or areas in two dimensions.
     pub volumes: Vec<f64>,
-    /// Which elements or nodes they are, by their place in the mesh.
+    /// Elements or nodes that they are, by their place in the mesh.
     pub of: Vec<usize>,
 }
 
@@ -162,7 +162,7 @@ impl Mesh {
     /// The particles of a mesh.
     ///
     /// # Errors
-    /// What is wrong with the mesh, or with what is asked of it.
+    /// A fault of the mesh, or of what is asked of it.
     pub fn table(mut self, request: &Request) -> Result<Table, Fault> {
         self.sort_nodes()?;
         let (cells, points) = self.chosen(request)?;

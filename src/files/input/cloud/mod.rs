@@ -52,27 +52,27 @@ const ENDINGS: &[(&str, FormatName)] = &[
     ("msh", FormatName::Gmsh),
 ];
 
-/// What is wanted of a file.
+/// Request for the content of a file.
 #[derive(Debug)]
 pub struct Request {
     /// Dimensions of the case.
     pub dimension: usize,
-    /// What the numbers of the file mean.
+    /// Units of the numbers of the file.
     pub units: UnitSystem,
-    /// What the file calls its columns or arrays.
+    /// Names of the file's columns or arrays.
     pub columns: Columns,
     /// Parts that the body is of; all of a file that has one.
     pub parts: Vec<Wanted>,
-    /// What of a mesh becomes particles.
+    /// Parts of a mesh that become particles.
     pub take: TakeName,
 }
 
-/// What is wrong, and which key of the input it is about.
+/// A fault, and the key of the input that it is about.
 #[derive(Debug)]
 pub struct Fault {
     /// `file`, or the key that would have to say something else.
     pub key: &'static str,
-    /// What is wrong.
+    /// The fault in words.
     pub words: String,
     /// True if there is no such file.
     pub is_missing: bool,
@@ -136,7 +136,7 @@ pub fn resolve(path: &Path) -> PathBuf {
 /// Reads particles of a file.
 ///
 /// # Errors
-/// What is wrong with the file, or with what is asked of it.
+/// A fault of the file, or of what is asked of it.
 pub fn read(
     path: &Path,
     format: FormatName,

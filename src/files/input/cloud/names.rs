@@ -1,4 +1,4 @@
-//! What files call the quantities that they hold.
+//! Names in files of the quantities that they hold.
 
 use model::Quantity;
 

@@ -44,7 +44,7 @@ impl PartName {
     }
 }
 
-/// Which of the parts of a file are wanted: of a file that has several, those that are named.
+/// Flags of the parts of a file that are wanted: of a file that has several, those that are named.
 ///
 /// # Errors
 /// If a part is not there, or none is named where there are several.

@@ -12,11 +12,11 @@ use model::Quantity;
 /// Particles read at a time.
 const CHUNK: usize = 1 << 20;
 
-/// Reads the particles of some bodies of a snapshot, but for frozen ones, with all that it tells of
+/// Reads the particles of some bodies of a snapshot, but for frozen ones, with all that it has of
 /// them.
 ///
 /// # Errors
-/// What is wrong with the file, or with what is asked of it.
+/// A fault of the file, or of what is asked of it.
 pub fn read(path: &Path, request: &Request) -> Result<Table, Fault> {
     let file = SnapshotFile::open(path).map_err(read_fault)?;
     let dimension = file.number("/whipple", "dimension").map_err(read_fault)?;
@@ -93,7 +93,7 @@ fn columns(file: &SnapshotFile, names: &[String]) -> Result<Vec<(Quantity, Vec<f
     Ok(columns)
 }
 
-/// Which of some rows are particles of the bodies that are wanted, and not frozen.
+/// Flags of some rows that are particles of the bodies that are wanted, and not frozen.
 fn kept(
     file: &SnapshotFile,
     rows: Range<usize>,

@@ -4,7 +4,7 @@ use super::Fault;
 use crate::input::source::nearest;
 use model::Quantity;
 
-/// What a file calls its columns, where the input says it.
+/// Names of the columns of a file, where the input states them.
 #[derive(Debug, Default, Clone)]
 pub struct Columns {
     /// Names of the components, or one of all, of quantities.
@@ -114,7 +114,7 @@ impl Table {
         self.is_flat(dimension)
     }
 
-    /// What lies beyond the dimension of the case must be the same for all.
+    /// Coordinates beyond the dimension of the case must be the same for all.
     fn is_flat(&self, dimension: usize) -> Result<(), Fault> {
         let Some((Quantity::Position, positions)) = self.columns.first() else {
             return Err("it has no places".into());

@@ -7,7 +7,7 @@ pub fn of(bytes: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(bytes)
 }
 
-/// What is wrong in a line, whose number counts from zero.
+/// Text of a fault in a line, whose number counts from zero.
 pub fn at(line: usize, what: impl AsRef<str>) -> String {
     format!("line {}: {}", line + 1, what.as_ref())
 }
@@ -141,7 +141,7 @@ impl<'t> Words<'t> {
             .map_err(|_| self.wrong(format!("`{}` is no whole number", shortened(word))))
     }
 
-    /// What is wrong here.
+    /// Text of a fault here.
     pub fn wrong(&self, what: impl AsRef<str>) -> String {
         at(self.line, what)
     }

@@ -1,4 +1,4 @@
-//! What the numbers of a file mean that says nothing of units.
+//! Meaning of the numbers of a file that says nothing of units.
 
 use super::Fault;
 use model::Quantity;

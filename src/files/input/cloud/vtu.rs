@@ -13,13 +13,13 @@ use model::Quantity;
 
 /// Most elements of the XML itself.
 const MOST_ELEMENTS: u32 = 100_000;
-/// What stands before raw data.
+/// Start of the element before raw data.
 const APPENDED: &[u8] = b"<AppendedData";
 
-/// Reads points, or elements or nodes of a grid, with the arrays that tell of them.
+/// Reads points, or elements or nodes of a grid, with the arrays that describe them.
 ///
 /// # Errors
-/// What is wrong with the file, or with what is asked of it.
+/// A fault of the file, or of what is asked of it.
 pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     let (head, appended) = split(bytes)?;
     let options = ParsingOptions {
@@ -47,7 +47,7 @@ pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     Piece::of(piece, &layout, bytes.len())?.table(request)
 }
 
-/// What stands at the end of a file, and whether it is in base 64.
+/// Data at the end of a file, and whether it is in base 64.
 type Appended<'a> = Option<(&'a [u8], bool)>;
 
 /// The XML without the data at its end, and those.

@@ -7,9 +7,9 @@ use crate::input::source::Diagnostic;
 use model::units::Powers;
 use model::{Combination, Function, Operation};
 
-/// What has been read of a part of the text.
+/// Result of the reading of a part of the text.
 pub struct Part {
-    /// Where it stands.
+    /// Its place.
     pub range: Range<usize>,
     /// Its first operation.
     pub first: usize,

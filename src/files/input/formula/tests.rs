@@ -1,4 +1,4 @@
-//! What formulas are read as, and what is said of those that are none.
+//! Results of the reading of formulas, and messages about those that are none.
 
 use super::*;
 use model::Vec3;

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use super::describe::described_words;
 
 choices! {
-    /// What the program chooses.
+    /// Choice of the program.
     AutoWord {
         /// Whatever is best.
         Auto,
@@ -42,7 +42,7 @@ choices! {
         /// Gmsh meshes.
         Gmsh,
     }
-    /// What of a mesh becomes particles.
+    /// Parts of a mesh that become particles.
     TakeName {
         /// Middles of elements, each with its volume.
         Elements,
@@ -100,7 +100,7 @@ pub enum AxisWord {
 described_words!(Direction, AxisWord);
 
 impl AxisWord {
-    /// Which axis (0, 1, 2), and 1 or −1.
+    /// Number of the axis (0, 1, 2), and 1 or −1.
     #[must_use]
     pub fn sense(self) -> (usize, f64) {
         match self {

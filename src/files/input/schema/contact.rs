@@ -95,13 +95,13 @@ impl Default for Choice {
 }
 
 impl Choice {
-    /// What is chosen.
+    /// Chosen mode.
     pub fn mode(&self) -> ContactMode {
         self.of(None)
     }
 }
 
-/// What the table of a mode must know of others.
+/// Parameters of others that the table of a mode needs.
 struct Shared {
     resistance: Resistance,
     form: SphForm,
@@ -134,7 +134,7 @@ macro_rules! choice {
 macro_rules! read {
     ($Table:ident: $($name:ident)+) => {
         impl $Table {
-            /// What this table chooses; the rest is that of `base`.
+            /// Choice of this table; the rest is that of `base`.
             pub fn choice(&self, base: &Choice, form: SphForm) -> Result<Choice, Diagnostic> {
                 let shared = Shared {
                     resistance: resistance(self.friction()?, self.damping()?, base.resistance),

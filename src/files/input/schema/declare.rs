@@ -1,4 +1,4 @@
-//! How tables and words to choose from are declared.
+//! Declarations of tables and of words to choose from.
 //!
 //! A key is one row:
 //!
@@ -76,7 +76,7 @@ macro_rules! table {
     };
 }
 
-/// What is typed for a key, within its range if it has one.
+/// Value that is typed for a key, within its range if it has one.
 macro_rules! typed_in {
     ($given:expr, $key:expr,) => {
         $given.as_ref().map($crate::input::schema::value::Free::typed)
@@ -158,7 +158,7 @@ macro_rules! value_of_law {
     };
 }
 
-/// What is so if a key is absent.
+/// Value or words of a key that is absent.
 macro_rules! absent {
     ($typed:ty; [] [] [$($words:literal)?]) => {
         $crate::input::schema::describe::Absent {

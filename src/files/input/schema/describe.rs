@@ -16,7 +16,7 @@ use model::{
     PotentialRange, Precision, SphForm,
 };
 
-/// What may be typed.
+/// Type of value that may be typed.
 pub trait Described {
     /// True if a key of this type may be left out.
     const OPTIONAL: bool = false;
@@ -25,7 +25,7 @@ pub trait Described {
     fn describe(definitions: &mut Definitions) -> Value;
 }
 
-/// Where tables stand in a schema.
+/// Place of tables in a schema.
 const DEFINITIONS: &str = "#/definitions/";
 
 /// The table that a schema refers to, if it is a reference.
@@ -46,13 +46,13 @@ pub struct Key {
     pub docs: &'static [&'static str],
     /// True if it may be left out.
     pub optional: bool,
-    /// What may be typed.
+    /// Schema of the values that may be typed.
     pub value: fn(&mut Definitions) -> Value,
-    /// What is so without it.
+    /// Value or words without it.
     pub absent: Absent,
 }
 
-/// What is so if a key is absent.
+/// Value or words of a key that is absent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Absent {
     /// The value that the key has then, if that is always the same.
@@ -73,7 +73,7 @@ impl Absent {
     }
 }
 
-/// Where internal schemas hold the words of absence of a key; the value is its `default`.
+/// Place of the words of absence of a key in internal schemas; the value is its `default`.
 pub const ABSENT: &str = "absent";
 
 impl Key {

@@ -1,4 +1,4 @@
-//! What is measured in a run, as it is typed.
+//! Measures of a run, as they are typed.
 
 use serde::Deserialize;
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! What is written, as it is typed.
+//! Output, as it is typed.
 
 use std::fmt;
 
@@ -80,7 +80,7 @@ impl<'de> Deserialize<'de> for ClockParams {
     }
 }
 
-/// How often, by steps or by time.
+/// Interval, in steps or in time.
 #[derive(Debug, Clone, Copy)]
 pub enum CadenceParams {
     /// Every so many steps.

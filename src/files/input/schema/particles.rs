@@ -63,7 +63,7 @@ optional_tables! {
 }
 
 impl super::BodyParams {
-    /// Where its geometry stands.
+    /// Place of its geometry.
     pub fn form_span(&self) -> std::ops::Range<usize> {
         let shape = self.shape.as_ref().map(Spanned::span);
         let particles = self.particles.as_ref().map(Spanned::span);

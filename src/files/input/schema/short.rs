@@ -91,7 +91,7 @@ pub struct LatticeParams {
     pub axis: Option<Spanned<AxisParams>>,
     /// True if the lattice is stretched to fill a box.
     pub fit: Option<Spanned<bool>>,
-    /// Which glass.
+    /// Number of the glass.
     pub seed: Option<Spanned<i64>>,
 }
 

@@ -1,4 +1,4 @@
-//! What the program takes of what is typed, and how rows of tables state what holds if nothing is.
+//! Values that the program takes of typed ones, and defaults that rows of tables state.
 
 use serde_json::{Value as Json, json};
 use toml::Spanned;
@@ -10,11 +10,11 @@ use crate::input::source::Diagnostic;
 use crate::input::validate::check::{Allowed, number, out_of_range};
 use model::readable::short;
 
-/// What has a value of its own.
+/// Type that has a value of its own.
 pub trait Typed {
-    /// How a row states a value.
+    /// Type of a value in a row.
     type Stated;
-    /// What the program takes.
+    /// Type of a value for the program.
     type Value;
 
     /// The value that a row states.
@@ -24,15 +24,15 @@ pub trait Typed {
     fn written(stated: Self::Stated) -> Json;
 }
 
-/// What may have any value of its type.
+/// Type that may have any of its values.
 pub trait Free: Typed {
     /// The value that is typed.
     fn typed(&self) -> Self::Value;
 }
 
-/// What may have the values of a range.
+/// Type that may have the values of a range.
 pub trait Ranged {
-    /// What there is then.
+    /// Result within the range.
     type Found;
 
     /// The value of a key.
@@ -42,7 +42,7 @@ pub trait Ranged {
     fn within(&self, key: &str, allowed: Allowed) -> Result<Self::Found, Diagnostic>;
 }
 
-/// What is typed, else what a row states.
+/// Typed value, else that which a row states.
 pub fn free<T: Free>(given: Option<&T>, stated: T::Stated) -> T::Value {
     given.map_or_else(|| T::value(stated), T::typed)
 }

@@ -28,7 +28,7 @@ pub fn absorbers(
     Ok(all)
 }
 
-/// What one zone is read with.
+/// Inputs of the reading of one zone.
 struct Reader<'a> {
     case: &'a Case,
     table: &'a Spanned<AbsorbParams>,

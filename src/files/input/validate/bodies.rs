@@ -22,12 +22,12 @@ use populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
 const MOST_SITES: u64 = 100_000_000_000;
-/// Where the first layer above a symmetry plane may lie, in spacings, so that particles neither
+/// Range of the first layer above a symmetry plane, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
 
-/// What a rigid body without a material is made of: contact takes the smaller of two moduli, so
-/// that of its partner. The density stands for nothing, since only volumes count.
+/// Material of a rigid body without one: contact takes the smaller of two moduli, so that of its
+/// partner. The density has no effect, since only volumes count.
 pub fn no_material() -> Material {
     Material {
         name: "rigid".to_owned(),
@@ -45,7 +45,7 @@ pub fn no_material() -> Material {
 /// An initial velocity (m/s), the motion of a rigid body, and the components of a velocity that varies.
 type Moves = (Vec3, Option<Motion>, Option<[Profile; 3]>);
 
-/// What all bodies share.
+/// Inputs that all bodies share.
 pub struct Reader<'a> {
     pub dimension: usize,
     /// The case, whose spacing is that of bodies that set none.
@@ -53,11 +53,11 @@ pub struct Reader<'a> {
     pub materials: &'a [String],
     /// The materials themselves.
     pub known: &'a [Material],
-    /// What fills bodies that do not say.
+    /// Filling of bodies that do not state one.
     pub filling: LatticeKind,
     /// Smoothing length over spacing.
     pub smoothing: f64,
-    /// Where the files that the case names stand.
+    /// Folder of the files that the case names.
     pub folder: &'a Path,
 }
 

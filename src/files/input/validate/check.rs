@@ -112,7 +112,7 @@ pub fn number<V: Value>(
     Err(out_of_range(value.span(), key, &allowed.words()))
 }
 
-/// What a key or another source gives; `table` is where the key should stand.
+/// Value from a key or another source; `table` is the place where the key should be.
 pub fn required<T>(found: Option<T>, key: &str, table: &Range<usize>) -> Result<T, Diagnostic> {
     found.ok_or_else(|| {
         let title = format!("the key `{key}` is missing");

@@ -1,4 +1,4 @@
-//! What is measured of a body because of its shape: plates, bars and targets.
+//! Measures of a body because of its shape: plates, bars and targets.
 
 use model::{Bar, Case, Include, MeasureKind, Primitive, Slab, Solid, Vec3};
 
@@ -43,7 +43,7 @@ fn axes_of(solid: &Solid) -> Option<[Vec3; 3]> {
     }
 }
 
-/// Where a body begins and ends (m) along a unit vector; across symmetry planes it goes on as far as above them.
+/// Ends (m) of a body along a unit vector; across symmetry planes it goes on as far as above them.
 fn reach(case: &Case, body: usize, way: &Vec3) -> [f64; 2] {
     let solid = case.bodies[body].shape.solid(case.dimension);
     let [mut low, high] = [-solid.support(&-way), solid.support(way)];

@@ -35,8 +35,8 @@ macro_rules! failure {
 }
 failure_laws!(failure);
 
-/// How a material of a strength fails: as the table says, and as the library's material where it
-/// says nothing.
+/// Failure of a material of a strength: as the table says, and as that of the library's material
+/// where it says nothing.
 pub fn failure(
     table: Option<&Spanned<OrNone<FailureParams>>>,
     base: Option<&Failure>,
@@ -61,7 +61,7 @@ pub fn failure(
     Ok(failure)
 }
 
-/// What the laws have in common.
+/// Common options of the laws.
 fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, Diagnostic> {
     let base = failure.options;
     let mut options = FailureOptions {

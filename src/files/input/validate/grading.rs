@@ -33,7 +33,7 @@ pub fn graded(params: Option<&Spanned<SpacingParams>>) -> Option<&SpacingTable> 
     }
 }
 
-/// How the spacing of a body of some shape grows; nothing if it does not within it.
+/// Growth of the spacing of a body of some shape; nothing if it does not grow within it.
 pub fn grading(
     shapes: &Shapes,
     table: &SpacingTable,
@@ -78,7 +78,7 @@ pub fn grading(
     Ok((grading.coarsest > shapes.spacing).then_some(grading))
 }
 
-/// Where the body is finest.
+/// Place at which the body is finest.
 fn focus(shapes: &Shapes, table: &SpacingTable, shape: &Shape) -> Result<Focus, Diagnostic> {
     let place = "a spacing that grows counts from `at`, a point, or from a `face`";
     match (&table.at, &table.face) {

@@ -1,4 +1,4 @@
-//! What the particles of bodies begin with: constants or formulas of the place.
+//! Initial values of the particles of bodies: constants or formulas of the place.
 
 use std::ops::Range;
 
@@ -38,7 +38,7 @@ pub fn velocity(
     }
 }
 
-/// What is given beside the velocity, whose components these are where they vary.
+/// Initial values beside the velocity, whose components these are where they vary.
 pub fn initial(
     params: &BodyParams,
     velocity: Option<[Profile; 3]>,
@@ -213,7 +213,7 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
     Ok(())
 }
 
-/// Where a key of a body stands, or its name.
+/// Place of a key of a body, or of its name.
 fn key_span(table: &Spanned<BodyParams>, key: &str) -> Range<usize> {
     let params = table.get_ref();
     let span = match key {

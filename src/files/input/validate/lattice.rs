@@ -1,4 +1,4 @@
-//! How a body is filled.
+//! Filling of a body.
 
 use toml::Spanned;
 
@@ -7,8 +7,8 @@ use crate::input::schema::LatticeParams;
 use crate::input::source::Diagnostic;
 use model::{Axis, Lattice, LatticeKind, Shape, SphForm};
 
-/// What fills bodies that do not say: glass, which prefers no direction. In the plane, where the
-/// kernel sums of glass scatter five times as much, and where stress points need rows, a cubic
+/// Filling of bodies that do not state one: glass, which prefers no direction. In the plane, where
+/// the kernel sums of glass scatter five times as much, and where stress points need rows, a cubic
 /// lattice.
 pub fn default_kind(dimension: usize, form: SphForm) -> LatticeKind {
     if dimension == 3 && form != SphForm::StressPoints {

@@ -1,4 +1,4 @@
-//! What reads a law of a table: all of its constants, or single values changed.
+//! Macros that read a law of a table: all of its constants, or single values changed.
 
 /// The law of a table that stands `$at` a place, with values of `$base`, the library's law of the same kind, where the
 /// table has none; a number without a default may be that of `$other` then, a function of its key.
@@ -23,7 +23,7 @@ macro_rules! law {
     }};
 }
 
-/// What a constant is if the table does not say.
+/// Value of a constant that the table does not state.
 macro_rules! base {
     ($base:ident $key:ident $other:ident []) => {
         $base

@@ -16,14 +16,14 @@ use model::readable::Readable;
 use model::{Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
 use populate::{self, Wanted};
 
-/// What loads are read with.
+/// Inputs of the reading of loads.
 pub struct Reader<'a> {
     pub dimension: usize,
     pub bodies: &'a mut [Body],
     pub symmetry: &'a [SymmetryPlane],
     /// The unit of length in messages.
     pub length_unit: &'a Readable,
-    /// Where the files that the case names stand.
+    /// Folder of the files that the case names.
     pub folder: &'a Path,
 }
 

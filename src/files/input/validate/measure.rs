@@ -1,4 +1,4 @@
-//! What is measured in a run.
+//! Measures of a run.
 
 use toml::Spanned;
 
@@ -14,7 +14,7 @@ use model::{Cadence, Case, Gauge, MeasureOptions, SphForm, SymmetryPlane, Witnes
 /// Rows of `measures.csv` of a run that does not say when it has them.
 const ROWS: f64 = 10.0;
 
-/// What is measured in a case that is whole but for that.
+/// Measures of a case that is whole but for them.
 pub fn measure(
     case: &Case,
     params: &MeasureParams,

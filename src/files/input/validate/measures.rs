@@ -1,4 +1,4 @@
-//! What `measures.csv` tells: plates, targets, bars, debris, regions and fronts.
+//! Measures in `measures.csv`: plates, targets, bars, debris, regions and fronts.
 
 use toml::Spanned;
 
@@ -29,7 +29,7 @@ const ASIDE: f64 = 1.5;
 /// Pieces of a line of a front are so many spacings long.
 const PIECE: f64 = 0.5;
 
-/// What a case measures: what its tables name, and the usual.
+/// Measures of a case: those that its tables name, and the default ones.
 pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Diagnostic> {
     let mut reader = Reader {
         case,
@@ -194,7 +194,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What leaves plates behind them, and targets before them, unless a table tells it.
+    /// Adds the debris behind plates, and that before targets, unless a table names it.
     fn usual_debris(&mut self) {
         for k in 0..self.found.len() {
             let is_given = |measure: &Measure| matches!(&measure.kind, MeasureKind::Debris(d) if d.of == Some(k));
@@ -215,7 +215,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What leaves a plate or target in a direction, as far as it struck it or is of it.
+    /// Debris of a plate or target in a direction, as far as it struck it or is of it.
     fn leaving(&self, of: usize, slab: &Slab, direction: [f64; 3]) -> Debris {
         let rears = Vec3::from(slab.normal).dot(&Vec3::from(direction)) < 0.0;
         let height = if rears { slab.rear } else { slab.front };

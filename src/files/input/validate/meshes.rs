@@ -12,13 +12,13 @@ use crate::input::source::{Diagnostic, nearest};
 use crate::input::triangles::{self, Format};
 use model::Mesh;
 
-/// What meshes are read with.
+/// Inputs of the reading of meshes.
 pub struct MeshReader<'a> {
-    /// Where the files that the case names stand.
+    /// Folder of the files that the case names.
     pub folder: &'a Path,
     /// Particle spacing (m): what is smaller is mended.
     pub spacing: f64,
-    /// What it is to be: a body, a rigid surface.
+    /// Use of it: a body, a rigid surface.
     pub what: &'a str,
 }
 

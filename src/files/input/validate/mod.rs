@@ -288,7 +288,7 @@ fn time_step(
     })
 }
 
-/// What has boxes.
+/// Options that have boxes.
 fn domain_and_output(
     params: &CaseParams,
     boxes: &KeepReader,

@@ -1,4 +1,4 @@
-//! What measures name: themselves, bodies and fields.
+//! Names that measures use: their own, and those of bodies and fields.
 
 use toml::Spanned;
 
@@ -7,7 +7,7 @@ use crate::input::source::Diagnostic;
 use model::Case;
 use particles::gauge_names;
 
-/// What a gauge reads that names nothing.
+/// Fields of a gauge that names none.
 const USUAL: [&str; 3] = ["pressure", "density", "velocity"];
 
 /// Refuses a name that another one has, and one that cannot stand in tables.
@@ -55,7 +55,7 @@ pub fn check_listed<'a, I: Iterator<Item = &'a str>>(
     Ok(())
 }
 
-/// What is read that a key names; `needs_any` of them.
+/// Fields to read that a key names; `needs_any` of them.
 pub fn fields(
     fields: Option<&Spanned<Vec<Spanned<String>>>>,
     needs_any: bool,

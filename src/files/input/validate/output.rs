@@ -1,4 +1,4 @@
-//! What is written, and when: `[output]` and its schedules of snapshots.
+//! Output and its times: `[output]` and its schedules of snapshots.
 
 use toml::Spanned;
 
@@ -16,7 +16,7 @@ use particles::{FIELDS, FieldId, TEMPERATURE, snapshot_names};
 /// A list of names as it is typed.
 type Names = Option<Spanned<Vec<Spanned<String>>>>;
 
-/// What the table is read with.
+/// Inputs of the reading of the table.
 pub struct Reader<'a> {
     /// Regions, and the bodies.
     pub boxes: &'a KeepReader<'a>,

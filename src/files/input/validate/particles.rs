@@ -20,12 +20,12 @@ use model::{
     Cloud, Initial, Placement, Primitive, Quantity, Shape, Solid, SurfaceFile, Vec3, cube, edge,
 };
 
-/// What a body is made with.
+/// Inputs of the particles of a body.
 pub struct Files<'a> {
     pub dimension: usize,
     /// The folder of the case.
     pub folder: &'a Path,
-    /// What the body is made of; nothing of a rigid body that names no material.
+    /// Its material; nothing of a rigid body that names none.
     pub material: Option<&'a Material>,
     /// Its spacing, or that of all bodies, as stated (m).
     pub spacing: Option<f64>,
@@ -293,7 +293,7 @@ fn turned(quantity: Quantity, values: &mut [f64], turn: &nalgebra::Matrix3<f64>)
     }
 }
 
-/// What a cloud tells of its body as a whole: the middle of its velocities (m/s), the largest
+/// Values by a cloud of its body as a whole: the middle of its velocities (m/s), the largest
 /// difference from that, and the specific energy (J/kg) of the largest magnitude.
 pub fn set_initial(cloud: &Cloud, velocity: &mut Vec3, initial: &mut Initial) {
     if let Some(velocities) = cloud.all(Quantity::Velocity) {

@@ -41,10 +41,10 @@ pub fn region(
     Ok(region)
 }
 
-/// What boxes are read with.
+/// Inputs of the reading of boxes.
 pub struct KeepReader<'a> {
     pub dimension: usize,
-    /// Where they begin.
+    /// Bodies, where they begin.
     pub bodies: &'a [Body],
     pub symmetry: &'a [SymmetryPlane],
     /// The unit of length in messages.

@@ -11,12 +11,12 @@ use crate::input::schema::{
 use crate::input::source::Diagnostic;
 use model::{Axis, Placement, Polygon, Primitive, Shape, Solid, Vec3, rotation};
 
-/// What the shape of one body is read with.
+/// Inputs of the reading of the shape of one body.
 pub struct Shapes<'a> {
     pub dimension: usize,
     /// The body's particle spacing (m).
     pub spacing: f64,
-    /// Where the files that the case names stand.
+    /// Folder of the files that the case names.
     pub folder: &'a Path,
 }
 

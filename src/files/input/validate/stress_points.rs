@@ -1,4 +1,4 @@
-//! What `form = "stress_points"` goes with.
+//! Options that go with `form = "stress_points"`.
 
 use std::ops::Range;
 

@@ -84,7 +84,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Which bodies feel a surface: those named, or all that are not rigid.
+    /// Flags of the bodies that feel a surface: those named, or all that are not rigid.
     fn acts_on(&self, names: Option<&[Spanned<String>]>) -> Result<Vec<bool>, Diagnostic> {
         let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
         let Some(names) = names else {

@@ -13,7 +13,7 @@ use populate;
 
 /// A shape as near to a plane as this rests on it (spacings).
 const RESTING: f64 = 1e-3;
-/// What rounding does to places (spacings): bodies do not move for it, and begin as much farther
+/// Effect of rounding on places (spacings): bodies do not move for it, and begin as much farther
 /// from a plane than where it pushes.
 const ROUNDING: f64 = 1e-9;
 

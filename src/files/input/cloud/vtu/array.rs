@@ -15,14 +15,14 @@ const MOST_COMPONENTS: usize = 64;
 /// A byte that is compressed cannot become more.
 const MOST_GROWTH: usize = 1100;
 
-/// How the file has its bytes.
+/// Encoding of the bytes in the file.
 #[derive(Debug)]
 pub struct Layout<'a> {
     /// Bytes of the number that tells a length: 4 or 8.
     pub header: usize,
     pub is_little: bool,
     pub is_compressed: bool,
-    /// What stands at the end of the file, and whether it is in base 64.
+    /// Data at the end of the file, and whether it is in base 64.
     pub appended: Option<(&'a [u8], bool)>,
 }
 

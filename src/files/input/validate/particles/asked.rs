@@ -1,4 +1,4 @@
-//! What the input asks of a file.
+//! Demands of the input on a file.
 
 use toml::Spanned;
 
@@ -7,7 +7,7 @@ use crate::input::schema::{ColumnsParams, NamesParams, PartParams, PartsParams};
 use crate::input::source::Diagnostic;
 use model::Quantity;
 
-/// What a file calls its columns.
+/// Names of the columns of a file.
 pub fn columns(table: &Spanned<ColumnsParams>) -> Columns {
     let params = table.get_ref();
     let names = |names: &NamesParams| match names {
