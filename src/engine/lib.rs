@@ -1,4 +1,4 @@
-//! What steps: domain decomposition over ranks, SPH, contact, loads, sums and measures, and the loop.
+//! Engine: domain decomposition over ranks, SPH, contact, loads, sums and measures, and the loop.
 
 pub mod contact;
 pub mod diagnose;

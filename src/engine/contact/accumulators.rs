@@ -11,7 +11,7 @@ const FOREIGN_WORK: usize = 90;
 /// A foreign particle closer than this (in mean spacings) counts as interpenetrated.
 const INTERPENETRATION_DISTANCE: f64 = 0.28;
 
-/// Where contact forces go, and what of the particles the sums need.
+/// Target of contact forces, and the fields of particles that the sums need.
 pub(super) struct Accumulators<'a> {
     pub acceleration: Scatter<'a, [f64; 3]>,
     /// That by stress and viscosity.
@@ -22,7 +22,7 @@ pub(super) struct Accumulators<'a> {
     pub approach: Scatter<'a, f64>,
     pub work: Scatter<'a, u32>,
     pub id: &'a [u64],
-    /// How many there are.
+    /// Number of bodies.
     pub bodies: usize,
     pub mass: &'a [f64],
     pub position: &'a [[f64; 3]],

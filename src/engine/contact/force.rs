@@ -5,7 +5,7 @@ use super::view::{ContactParticle, Separation};
 use numerics::virial::Virial;
 use particles::empty;
 
-/// What contact of one mode does to one particle.
+/// Forces of contact of one mode on one particle.
 #[derive(Debug, Clone, Copy)]
 pub struct ContactForce {
     /// Index in the store.
@@ -32,7 +32,7 @@ pub struct ContactForce {
     pub approach: f64,
 }
 
-/// What one foreign body does to one particle.
+/// Forces of one foreign body on one particle.
 #[derive(Debug, Clone, Copy)]
 pub struct BodyForce {
     /// Index in the store.
@@ -51,7 +51,7 @@ pub struct BodyForce {
     pub nearest: usize,
 }
 
-/// What contact forces carry through the matter of a particle.
+/// Stress that contact forces carry through the material of a particle.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ContactStress {
     /// Of all forces, over half of the line of each pair and all of that to a rigid surface.
@@ -78,10 +78,10 @@ impl ContactStress {
     }
 }
 
-/// What contact does to the particles of one task, kept from step to step.
+/// Contact forces on the particles of one task, kept from step to step.
 #[derive(Debug, Default)]
 pub struct TaskForces {
-    /// To each of them, mode after mode.
+    /// Those on each of them, mode after mode.
     pub particles: Vec<ContactForce>,
     /// The same by the other body.
     pub by_body: Vec<BodyForce>,
@@ -92,7 +92,7 @@ pub(super) struct Receiver<'a> {
     pub sum: ContactForce,
     body: usize,
     by_body: &'a mut Vec<BodyForce>,
-    /// Where its own begin.
+    /// Index of the first of its own.
     first: usize,
 }
 
@@ -191,7 +191,7 @@ impl<'a> Receiver<'a> {
         body
     }
 
-    /// What is by one body, which few others are.
+    /// Entry by one body, beside few others.
     #[inline]
     fn by(&mut self, body: usize) -> &mut BodyForce {
         let own = &self.by_body[self.first..];

@@ -34,16 +34,16 @@ pub struct Slip {
     pub sliding: bool,
 }
 
-/// What friction and damping do.
+/// Effects of friction and damping.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Friction {
     /// Force on the particle (N).
     pub force: [f64; 3],
     /// The slip after the step.
     pub slip: Slip,
-    /// What becomes heat (W).
+    /// Heat (W).
     pub power: f64,
-    /// What the spring holds (J).
+    /// Energy of the spring (J).
     pub energy: f64,
 }
 

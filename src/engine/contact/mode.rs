@@ -14,9 +14,9 @@ use particles::{GRAIN, ParticleStore, empty};
 
 /// A mode of contact, in a file of its own and listed in `contact_modes!`.
 pub(crate) trait Mode: Listed + Sized {
-    /// What it measures of a particle before the forces.
+    /// Measurement of a particle before the forces.
     type Measured: Send + Sync;
-    /// What its forces read of a particle.
+    /// Values of a particle that its forces read.
     type Side: Copy;
 
     /// Measures before the forces, and stores what these read. `found` is kept from step to step.
@@ -28,11 +28,11 @@ pub(crate) trait Mode: Listed + Sized {
         0
     }
 
-    /// What forces read of a particle.
+    /// Values of a particle that forces read.
     fn side(view: &ContactView, particle: &ContactParticle) -> Self::Side;
 
-    /// What a pair does to its first particle, if anything; adds to the stiffness for the time step
-    /// (N/m) of this particle.
+    /// Force of a pair on its first particle, if any; adds to the stiffness for the time step (N/m)
+    /// of this particle.
     fn force(pair: &ParticlePair<Self>, stiffness: &mut f64) -> Option<PairForce>;
 
     /// Adds what friction and damping of the receiver `i` rest on: half of each force, if not said
@@ -59,10 +59,10 @@ pub(crate) trait Mode: Listed + Sized {
     }
 }
 
-/// What a mode measures, chunk by chunk.
+/// Measurements of a mode, chunk by chunk.
 pub(crate) type MeasuredChunks<M> = Vec<Vec<<M as Mode>::Measured>>;
 
-/// What a mode measures on, after a step of `dt` (s).
+/// Input of the measurements of a mode, after a step of `dt` (s).
 pub(crate) struct Scene<'a> {
     pub particles: &'a mut ParticleStore,
     pub lists: &'a Lists,
@@ -89,16 +89,16 @@ pub(crate) struct ParticlePair<'a, M: Mode> {
     pub there: M::Side,
 }
 
-/// What a pair does to its first particle.
+/// Force of a pair on its first particle.
 pub(crate) struct PairForce {
     /// Force of the energy, and friction (N).
     pub force: [f64; 3],
-    /// What the viscosity of the contact pushes along the line between the two (N): positive pushes
-    /// i away from j.
+    /// Force of the viscosity of the contact along the line between the two (N): positive pushes i
+    /// away from j.
     pub drag: f64,
     /// Its half of the energy (J).
     pub energy: f64,
-    /// What friction rests on from the side of each (N).
+    /// Load of friction from the side of each (N).
     pub loads: [f64; 2],
 }
 
@@ -182,7 +182,7 @@ impl TaskForces {
     }
 }
 
-/// What forces of one mode carry through a receiver: half of each pair's line is its side's.
+/// Stress by forces of one mode in a receiver: half of each pair's line is its side's.
 fn stress_of_mode<M: Mode>(
     view: &ContactView,
     i: &ContactParticle,
@@ -236,7 +236,7 @@ pub(super) fn for_each_chunk<T: Send>(
 
 macro_rules! dispatch {
     ($($name:ident: $Mode:ident,)+) => {
-        /// What all modes measure, kept from step to step.
+        /// Measurements of all modes, kept from step to step.
         #[derive(Default)]
         pub(super) struct Measurements {
             $($name: MeasuredChunks<model::$Mode>,)+
@@ -273,8 +273,8 @@ macro_rules! dispatch {
             }
         }
 
-        /// What forces of a class carry through the receiver `i`, with friction and damping if
-        /// there are any.
+        /// Stress that forces of a class carry through the receiver `i`, with friction and damping
+        /// if there are any.
         pub(super) fn stress_of(
             view: &ContactView,
             class: ContactClass,
@@ -289,7 +289,7 @@ macro_rules! dispatch {
             }
         }
 
-        /// What friction and damping of the receiver `i` rest on, given its neighbours by class.
+        /// Load of friction and damping of the receiver `i`, given its neighbours by class.
         pub(super) fn normal_load(
             view: &ContactView,
             i: &ContactParticle,

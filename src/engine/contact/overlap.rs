@@ -20,12 +20,12 @@ use particles::HaloPhase;
 use particles::Mirrors;
 use populate;
 
-/// What the core's viscosity is of the mass of a pair, its approach squared and its depth, over its
-/// radius.
+/// Factor of the core's viscosity for the mass of a pair, its approach squared and its depth, over
+/// its radius.
 const CORE_VISCOSITY: f64 = 5.0;
 
-/// What the viscosity of an isolated particle is of the density of a pair, its approach squared and
-/// the slope of its kernel over both volumes.
+/// Factor of the viscosity of an isolated particle for the density of a pair, its approach squared
+/// and the slope of its kernel over both volumes.
 const ISOLATED_VISCOSITY: f64 = 20.0;
 
 /// The excess of both sides at which that viscosity is whole.
@@ -86,7 +86,7 @@ impl Constants for Overlap {
     }
 }
 
-/// What the core of two bodies is as stiff as (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
+/// Stiffness of the core of two bodies (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
 /// speed against each other that the case states. M and ρ are harmonic means of moduli and
 /// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
 fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {

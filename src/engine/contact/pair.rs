@@ -44,7 +44,7 @@ pub(crate) trait Constants: ContactLaw {
     /// Its constants of an ordered pair of size classes.
     type Pair: Debug + Clone + Default;
 
-    /// What it makes halo particles hear of before the forces, beside the stresses.
+    /// Fields that halo particles receive for it before the forces, beside the stresses.
     const HALO: HaloPhase = HaloPhase::empty();
 
     /// The option of the table of fields that holds fields of this mode alone.
@@ -54,7 +54,7 @@ pub(crate) trait Constants: ContactLaw {
     fn pair(&self, of: &Between) -> Self::Pair;
 }
 
-/// Where the constants of a mode are kept.
+/// Access to the constants of a mode.
 pub(crate) trait Listed: Constants {
     fn list(pairs: &ModePairs) -> &[Self::Pair];
 }
@@ -86,7 +86,7 @@ macro_rules! pairs {
             }
         )+
 
-        /// What a mode needs.
+        /// Needs of a mode.
         pub(super) fn needs(mode: &ContactMode) -> (HaloPhase, Owner) {
             match mode {
                 ContactMode::None | ContactMode::Kernel => (HaloPhase::empty(), Owner::empty()),

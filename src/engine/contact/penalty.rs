@@ -28,7 +28,7 @@ pub(crate) struct PenaltyPair {
     modulus: f64,
     /// True if the force is no more than what stops the approach in one step.
     pinball: bool,
-    /// What tells boundary particles of the receiver's body.
+    /// Limits that distinguish boundary particles of the receiver's body.
     boundary: Boundary,
 }
 

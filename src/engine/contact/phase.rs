@@ -22,14 +22,14 @@ pub struct Contact {
     /// The fragments that bodies come apart into.
     pub(crate) connectivity: Connectivity,
     pub(crate) surfaces: SurfaceForces,
-    /// What contact adds up: on this rank, then on all.
+    /// Sums of contact: on this rank, then on all.
     pub(crate) sums: ContactSums,
     /// The same by thread, until they are joined.
     parts: Vec<ContactSums>,
     measurements: Measurements,
     tasks: Vec<Task>,
     bodies: usize,
-    /// How long a particle may be enclosed before it counts as interpenetrated (s).
+    /// Time that a particle may be enclosed before it counts as interpenetrated (s).
     enclosed_limit: f64,
     /// Safety factor of the contact step.
     safety: f64,
@@ -73,13 +73,13 @@ impl Contact {
             + tasks
     }
 
-    /// What halo particles need before the forces of stress and contact.
+    /// Fields that halo particles need before the forces of stress and contact.
     #[must_use]
     pub fn halo_of_forces(&self) -> HaloPhase {
         self.table.halo
     }
 
-    /// What forces read of particles with foreign neighbours, after a step `dt` (s).
+    /// Measures particles with foreign neighbours for the forces, after a step `dt` (s).
     pub fn measure(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
         if self.table.is_active() {
             self.measurements.measure(&mut Scene {
@@ -198,8 +198,8 @@ impl Contact {
             .for_each(|((task, foreign), own)| work(task, &view, foreign, own));
     }
 
-    /// What contact does to each particle, and the sums of it. Each thread takes every so manieth
-    /// task, since those that have contact stand together.
+    /// Adds contact to each particle, and the sums of it. Each thread takes every so manieth
+    /// task, since those that have contact are adjacent.
     fn book(&mut self, particles: &mut ParticleStore) {
         fill(&mut particles.contact_acceleration, [0.0; 3]);
         fill(&mut particles.contact_energy, 0.0);

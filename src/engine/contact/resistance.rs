@@ -8,7 +8,7 @@ use super::view::{ContactParticle, ContactView};
 use numerics::vector::norm;
 use particles::Mirrors;
 
-/// What friction and damping of a receiver rest on: sums over its pairs, weighted with `o_ij`.
+/// Load of friction and damping of a receiver: sums over its pairs, weighted with `o_ij`.
 #[derive(Default)]
 pub(crate) struct NormalLoad {
     load: f64,
@@ -60,7 +60,7 @@ impl NormalLoad {
     }
 }
 
-/// What friction that rests on one particle does to its pairs, over its load.
+/// Effects on its pairs of friction that rests on one particle, over its load.
 struct Shared {
     /// Force on the particle.
     force: [f64; 3],

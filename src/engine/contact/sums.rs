@@ -1,4 +1,4 @@
-//! What contact adds up: exact sums, counts and extremes, of pairs of bodies and of all.
+//! Sums of contact: exact sums, counts and extremes, of pairs of bodies and of all.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use numerics::gathered_sums::{self, GatheredSums};
 use numerics::vector::cross;
 use particles::MirrorForce;
 
-/// What a pair of bodies has come to in an interval of steps.
+/// Extremes of a pair of bodies in an interval of steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PairExtremes {
     /// Largest magnitude of the force between the two (N).

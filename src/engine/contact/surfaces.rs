@@ -19,7 +19,7 @@ use numerics::vector::{cross, dot};
 use particles::neighbours::SizeClasses;
 use particles::{GRAIN, ParticleStore, Scatter};
 
-/// What a surface does to one particle.
+/// Push of a surface on one particle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Push {
     particle: usize,
@@ -35,7 +35,7 @@ pub(super) struct Push {
     gap: f64,
     /// Velocity of the surface there (m/s).
     pub ground: [f64; 3],
-    /// What friction and damping turn into heat (W).
+    /// Heat by friction and damping (W).
     pub heat: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Push {
 struct Penalty {
     /// Stiffness over volume, `κ M/Δp²` (Pa/m²).
     stiffness: f64,
-    /// Where it begins, ½Δp (m).
+    /// Distance at which it begins, ½Δp (m).
     reach: f64,
     h: f64,
     /// Over volume: the spring that sticks (Pa/m²), `2 ζ √(κ M ρ₀)/Δp` (Pa s/m²).
@@ -141,8 +141,8 @@ impl Penalty {
         }
     }
 
-    /// How far from the surface particles are looked for: where they feel it or approach it, and
-    /// as far behind it as no penalty lets them come.
+    /// Distance within which particles are looked for: where they feel the surface or approach it,
+    /// and as far behind it as no penalty lets them come.
     fn limit(&self) -> f64 {
         2.0 * self.h.max(self.reach)
     }
@@ -240,8 +240,8 @@ impl SurfaceForces {
             .reduce(gathered_sums::none, gathered_sums::merged)
     }
 
-    /// What the forces of the last step carry through particles, with their indices: the matter
-    /// between a particle and a surface is all its own.
+    /// Stress that the forces of the last step carry through particles, with their indices: the
+    /// material between a particle and a surface is all its own.
     pub(super) fn carried(&self) -> impl Iterator<Item = (usize, ContactStress)> {
         self.pushes.iter().flatten().map(|push| {
             let press = dot(&push.force, &push.normal);
@@ -291,7 +291,7 @@ impl SurfaceForces {
     }
 }
 
-/// What a push depends on.
+/// Inputs of a push.
 struct View<'a> {
     pub particles: &'a ParticleStore,
     pub table: &'a ContactTable,
@@ -317,7 +317,7 @@ impl View<'_> {
         (self.table.size_class(body, mass), volume)
     }
 
-    /// What surface `n` does to particle `i`, if that is near it.
+    /// Push of surface `n` on particle `i`, if that is near it.
     fn push(&self, i: usize, n: usize) -> Option<Push> {
         let (size_class, volume) = self.size_class(i);
         let penalty = self.penalties[n][size_class].as_ref()?;

@@ -13,15 +13,15 @@ pub struct ContactTable {
     pub kernel: Kernel,
     /// Groups of bodies, which see each other in the SPH sums and have no other contact.
     pub groups: Groups,
-    /// Which mode handles a pair, and its range.
+    /// Mode of each pair, and its range.
     pub foreign: ForeignTable,
-    /// What halo particles need before the forces.
+    /// Fields that halo particles need before the forces.
     pub halo: HaloPhase,
     /// Constants of the modes, in the order of the pairs.
     modes: ModePairs,
     pairs: Vec<Pair>,
     inverse_densities: Vec<f64>,
-    /// How many times its reference volume a particle's matter may fill, by body.
+    /// Multiple of its reference volume that a particle's material may fill, by body.
     expansions: Vec<f64>,
     owners: Owner,
 }
@@ -145,7 +145,7 @@ impl ContactTable {
         self.foreign.size_classes.of(body, mass)
     }
 
-    /// How many bodies there are.
+    /// Number of bodies.
     #[must_use]
     pub fn bodies(&self) -> usize {
         self.foreign.size_classes.bodies()
@@ -158,8 +158,8 @@ impl ContactTable {
         self.foreign.class[self.at(a, b)].map(|_| self.pair(a, b))
     }
 
-    /// How many times its reference volume the matter of a particle of a body may fill: beyond that
-    /// what may fail has voids, which are not of the body.
+    /// Multiple of its reference volume that the material of a particle of a body may fill: beyond
+    /// that, material that may fail has voids, which are not of the body.
     #[inline(always)]
     pub(super) fn expansion(&self, body: usize) -> f64 {
         self.expansions[body]
@@ -209,7 +209,7 @@ impl ContactTable {
     }
 }
 
-/// What two bodies do to each other, or fragments of one.
+/// Mode of contact between two bodies, or fragments of one.
 fn mode_between(case: &Case, a: usize, b: usize) -> ContactMode {
     if [a, b].iter().all(|&body| case.bodies[body].rigid.is_some()) {
         ContactMode::None

@@ -1,4 +1,4 @@
-//! What contact does to the receivers of one task.
+//! Contact of the receivers of one task.
 
 use super::force::TaskForces;
 use super::friction::Friction;

@@ -1,4 +1,4 @@
-//! What the contact sums read: particles as they meet, and how they stand to each other.
+//! Inputs of the contact sums: particles as they meet, and their separations.
 
 use super::ContactTable;
 use numerics::vector::square;
@@ -6,7 +6,7 @@ use particles::Mirrors;
 use particles::neighbours::{Lists, MotionRecord};
 use particles::{Image, ParticleStore};
 
-/// What the contact sums read.
+/// Inputs of the contact sums.
 #[derive(Clone, Copy)]
 pub struct ContactView<'a> {
     /// The images in canonical order.
@@ -84,7 +84,7 @@ impl<'a> ContactView<'a> {
     }
 }
 
-/// How two particles stand to each other.
+/// Separation of two particles.
 pub(super) struct Separation {
     /// `x_i − x_j` (m).
     pub r: [f64; 3],

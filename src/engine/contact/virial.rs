@@ -11,9 +11,9 @@ use particles::ParticleStore;
 use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 
 impl Contact {
-    /// What the contact forces of the last step, of `dt` (s), carry through owned particles, with
-    /// their indices, ascending; none of those that nothing presses on. Lists and halo must still
-    /// be those of that step.
+    /// Stress that the contact forces of the last step, of `dt` (s), carry through owned particles,
+    /// with their indices, ascending; none of those that nothing presses on. Lists and halo must
+    /// still be those of that step.
     pub(crate) fn carried(
         &self,
         particles: &ParticleStore,

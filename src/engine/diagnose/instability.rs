@@ -16,7 +16,7 @@ use numerics::vector::square;
 use particles::ParticleStore;
 use populate;
 
-/// What is allowed to what is at rest, over `½ m U²` with the speed U that is natural to the case.
+/// Energy allowed to particles at rest, over `½ m U²` with the speed U that is natural to the case.
 const ROUNDING: f64 = 1e-9;
 
 /// `½ m c² (ρ/ρ₀ − 1)²` of all bodies, and what rounding may do (J). Collective.

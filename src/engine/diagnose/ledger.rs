@@ -19,7 +19,7 @@ pub struct PairState {
     pub impulse: [f64; 3],
     /// Contact energy between the two now (J).
     pub energy: f64,
-    /// What friction and damping turn into heat now (W).
+    /// Heat by friction and damping now (W).
     #[serde(default)]
     pub heat_power: f64,
     /// Its time integral (J).
@@ -27,7 +27,7 @@ pub struct PairState {
     pub heat: f64,
     /// Particles with excess now.
     pub touching: i64,
-    /// What they have come to since the last row of tables.
+    /// Their extremes since the last row of tables.
     #[serde(default)]
     pub extremes: PairExtremes,
 }
@@ -85,7 +85,7 @@ pub struct LoadState {
     pub impulse: [f64; 3],
     /// Work done on the model so far (J).
     pub work: f64,
-    /// What friction and damping of a surface turn into heat now (W).
+    /// Heat by friction and damping of a surface now (W).
     #[serde(default)]
     pub heat_power: f64,
     /// Its time integral (J).
@@ -93,7 +93,7 @@ pub struct LoadState {
     pub heat: f64,
 }
 
-/// What has passed a witness plane in one direction so far (SI).
+/// Particles that have passed a witness plane in one direction so far (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Passed {
@@ -161,11 +161,11 @@ pub struct RunState {
     /// clip it.
     #[serde(deserialize_with = "step_or_none")]
     pub dt: f64,
-    /// What limits it.
+    /// Limit that sets it.
     pub dt_reason: Reason,
     /// The time step just done (s).
     pub last_dt: f64,
-    /// What limited that.
+    /// Limit that set that.
     pub last_reason: Reason,
     /// Sums at the start.
     pub initial: Totals,
@@ -179,7 +179,7 @@ pub struct RunState {
     pub plane_force: [f64; 3],
     /// Its time integral, particles that crossed a plane included (N s).
     pub plane_impulse: [f64; 3],
-    /// How often a particle has crossed a symmetry plane so far.
+    /// Number of crossings of symmetry planes by particles so far.
     #[serde(default)]
     pub plane_crossings: i64,
     /// Torque about the origin of symmetry planes, rigid surfaces and gravity now (N m).
@@ -209,14 +209,14 @@ pub struct RunState {
     pub interpenetrated: i64,
     /// Particles whose gradient has no correction now, in the normalised form.
     pub uncorrected: i64,
-    /// What removed particles took with them, by body; empty as long as there are none.
+    /// Sums that removed particles took with them, by body; empty as long as there are none.
     #[serde(default)]
     pub removed: Vec<Removed>,
     /// Contact energy that went with them (J).
     #[serde(default)]
     pub removed_contact_energy: f64,
-    /// What particles that left the box of interest took with them, by body; empty as long as the
-    /// case has none.
+    /// Sums that particles that left the box of interest took with them, by body; empty as long as
+    /// the case has none.
     #[serde(default)]
     pub departed: Vec<Removed>,
     /// Contact energy that went with them (J).
@@ -225,10 +225,10 @@ pub struct RunState {
     /// Ids of the particles that carry gauges, in the order of these.
     #[serde(default)]
     pub gauge_carriers: Vec<u64>,
-    /// What has passed the witness planes: by plane, body and direction, along the normal first.
+    /// Crossings of the witness planes: by plane, body and direction, along the normal first.
     #[serde(default)]
     pub passed: Vec<Passed>,
-    /// What measures remember, in their order.
+    /// Memory of the measures, in their order.
     #[serde(default)]
     pub remembered: Vec<Remembered>,
     /// Largest values over the run.

@@ -10,7 +10,7 @@ use model::readable::{short, shown};
 use model::{Case, NumericalLimits};
 use numerics::vector::square;
 
-/// What is wrong with a particle, the worst first.
+/// Numerical failure of a particle, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumericalFailure {
     /// A number is none.
@@ -28,7 +28,7 @@ pub enum NumericalFailure {
 }
 
 impl NumericalFailure {
-    /// What a particle may report, in the order of candidates.
+    /// Failures that a particle may report, in the order of candidates.
     pub const ALL: [Self; 5] = [
         Self::NotFinite,
         Self::Density,
@@ -44,7 +44,7 @@ impl NumericalFailure {
         matches!(self, Self::NotFinite | Self::Gain)
     }
 
-    /// What is wrong and which key says so.
+    /// The failure in words, with the key of its limit.
     #[must_use]
     pub fn describe(self, limits: &NumericalLimits) -> String {
         match self {
@@ -77,8 +77,8 @@ impl NumericalFailure {
     }
 }
 
-/// What a kick has at hand of a particle: velocity (m/s), specific energy (J/kg), acceleration by
-/// contact (m/s²).
+/// State of a particle that a kick has at hand: velocity (m/s), specific energy (J/kg),
+/// acceleration by contact (m/s²).
 pub(crate) struct Moved {
     pub velocity: [f64; 3],
     pub energy: f64,
@@ -129,7 +129,7 @@ impl Limits {
         dense & (heat <= self.energy_max.min(f64::MAX)) & (speed2 <= self.speed2_max.min(f64::MAX))
     }
 
-    /// What is out of range of a particle whose numbers are numbers.
+    /// Failure of a particle without NaN, by a value out of range.
     pub(crate) fn check(&self, body: u32, rho: f64, moved: &Moved) -> Option<NumericalFailure> {
         let [lower, upper] = self.density[body as usize];
         if rho < lower || rho > upper {

@@ -1,10 +1,10 @@
-//! Which pairs of bodies have met, and what they add up on all ranks.
+//! Pairs of bodies that have met, and their sums on all ranks.
 
 use crate::contact::{Closest, PairBook, PairExtremes};
 use comm::Comm;
 
-/// Which pairs of bodies have met since the process started, agreed by all ranks, and what each has
-/// come to on this rank since the extremes of all were last joined.
+/// Pairs of bodies that have met since the process started, agreed by all ranks, and the extremes
+/// of each on this rank since those of all were last joined.
 #[derive(Debug, Default)]
 pub(super) struct Meetings {
     /// By [`pair_key`], in that order.
@@ -21,7 +21,7 @@ impl Meetings {
         self.pairs.iter().map(|pair| pair.0)
     }
 
-    /// Where a pair stands, or would.
+    /// Place of a pair, or that at which it would be.
     fn place(&self, key: usize) -> Result<usize, usize> {
         self.pairs.binary_search_by_key(&key, |pair| pair.0)
     }
@@ -30,7 +30,7 @@ impl Meetings {
         self.place(key).is_ok()
     }
 
-    /// How many pairs have met on this rank of which not all ranks know.
+    /// Number of pairs that have met on this rank of which not all ranks know.
     pub fn news(&self, book: &PairBook) -> usize {
         book.iter().filter(|&(key, _)| !self.has(key)).count()
     }

@@ -1,4 +1,4 @@
-//! What is about a particle that failed numerically: its neighbours on this rank, and the last
+//! Surroundings of a particle that failed numerically: its neighbours on this rank, and the last
 //! choices of steps.
 
 use std::collections::VecDeque;
@@ -30,16 +30,16 @@ pub struct PostMortem {
     pub past_steps: Vec<PastStep>,
 }
 
-/// How a step was chosen, for post-mortems.
+/// Choice of a step, for post-mortems.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PastStep {
     /// Steps done.
     pub step: u64,
     /// Step chosen (s).
     pub dt: f64,
-    /// What limits it.
+    /// Limit that sets it.
     pub reason: &'static str,
-    /// Who asks for it.
+    /// Id of the particle that requires it.
     pub id: u64,
 }
 
@@ -47,8 +47,8 @@ pub struct PastStep {
 pub(crate) const PAST_STEPS: usize = 16;
 
 impl PostMortem {
-    /// What is about the particle `id`, on the rank `rank` that owns it; nothing on others. `reach`
-    /// (m) is how far neighbours are looked for.
+    /// Surroundings of the particle `id`, on the rank `rank` that owns it; nothing on others.
+    /// Neighbours are looked for within `reach` (m).
     pub(crate) fn of(
         id: u64,
         rank: usize,

@@ -1,8 +1,8 @@
-//! What limits time steps.
+//! Limits of time steps.
 
 use serde::{Deserialize, Serialize};
 
-/// What limited a time step.
+/// Limit of a time step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reason {

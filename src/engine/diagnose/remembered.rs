@@ -1,8 +1,8 @@
-//! What measures remember from row to row.
+//! Memory of measures from row to row.
 
 use serde::{Deserialize, Serialize};
 
-/// What a measure remembers from the start and from its last row.
+/// Memory of a measure from the start and from its last row.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Remembered {

@@ -1,4 +1,4 @@
-//! What a step adds up over all particles and ranks: exact sums, counts and extremes.
+//! Sums of a step over all particles and ranks: exact sums, counts and extremes.
 
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use numerics::vector::cross;
 use particles::Mirrors;
 use particles::{GRAIN, ParticleStore};
 
-/// What a step adds up beside contact and loads, with the memory to join all.
+/// Sums of a step beside contact and loads, with the memory to join all.
 pub(crate) struct StepSums {
     /// Work of contact forces on this rank's particles.
     pub contact_work: ExactSum,
@@ -24,7 +24,7 @@ pub(crate) struct StepSums {
     crossing_angular_impulse: [ExactSum; 3],
     /// Particles that crossed a symmetry plane in this step.
     pub crossings: i64,
-    /// Where all particles are and how they move, after the step.
+    /// Extents of positions and velocities of all particles, after the step.
     pub span: Span,
     uncorrected: i64,
     meetings: Meetings,
@@ -38,7 +38,7 @@ pub(crate) struct StepSums {
     joint: Joint,
 }
 
-/// What all ranks agree on at the end of a step with its sums: first those of this rank, then of all.
+/// Values on which ranks agree at the end of a step with its sums: first of this rank, then of all.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Votes {
     /// The first candidate for the next step, in the order of its words.
@@ -208,7 +208,7 @@ impl StepSums {
         self.span = Span::read(&joint.least[2..]);
     }
 
-    /// What one rank alone has to do in place of both.
+    /// Work of one rank alone in place of both.
     fn meet(&mut self, comm: &Comm, booked: &mut Booked) {
         self.uncorrected = booked.uncorrected;
         let book = &mut booked.contact.sums.pairs;

@@ -1,4 +1,4 @@
-//! What particles that are taken out of a run take with them.
+//! Sums of particles that are taken out of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +11,11 @@ pub enum Leave {
     Departed,
 }
 
-/// What particles that were taken out took with them, of one body.
+/// Sums that particles of one body took with them that were taken out.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Removed {
-    /// How many.
+    /// Number of them.
     pub particles: u64,
     /// `Σ m` (kg).
     pub mass: f64,

@@ -172,7 +172,7 @@ impl RunState {
         self.departed.iter().map(|gone| gone.mass).sum()
     }
 
-    /// What all particles that were taken out took with them, by cause and body.
+    /// Sums that all particles that were taken out took with them, by cause and body.
     fn taken_out(&self) -> impl Iterator<Item = &Removed> {
         self.removed.iter().chain(&self.departed)
     }
@@ -222,7 +222,7 @@ impl RunState {
         }
     }
 
-    /// What angular momentum is off by that no angular impulse explains.
+    /// Records the error of angular momentum that no angular impulse explains.
     fn book_angular_momentum(&mut self) {
         let Some(scale) = self.angular_momentum_scale else {
             return;

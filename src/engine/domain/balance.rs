@@ -9,7 +9,7 @@ use super::rank_speed::RankSpeeds;
 use comm::Comm;
 use numerics::ordered::{disordered, ordered};
 
-/// What the balance works in, kept from one to the next.
+/// Memory of the balance, kept from one to the next.
 #[derive(Debug, Default)]
 pub struct Balance {
     /// Counted work.
@@ -146,7 +146,7 @@ impl Balance {
     }
 }
 
-/// What a particle counts at least, by the work of all. Collective.
+/// Least work that a particle counts, by the work of all. Collective.
 fn floor(comm: &Comm, work: &[u32]) -> u32 {
     // same bits in any order: whole numbers
     let all = work.par_iter().map(|&work| u64::from(work)).sum();

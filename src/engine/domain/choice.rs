@@ -1,4 +1,4 @@
-//! How often space is cut, and along which axes: so that the fullest halo is small.
+//! Levels and axes of the cuts of space: chosen so that the fullest halo is small.
 
 use super::balance::Balance;
 use super::halo_count::HaloCount;
@@ -12,7 +12,7 @@ use model::Case;
 #[derive(Debug)]
 pub struct Choice {
     dimension: usize,
-    /// How many axes the case names.
+    /// Number of axes that the case names.
     named: usize,
     halos: HaloCount,
     trial: NestedSlabs,
@@ -20,8 +20,8 @@ pub struct Choice {
     seen: Option<u64>,
 }
 
-/// What other slabs must leave of the largest halo to be worth the messages of more levels, or the way
-/// there.
+/// Share of the largest halo below which other slabs are worth the messages of more levels, or the
+/// way there.
 pub(super) const WORTHWHILE: f64 = 0.95;
 
 impl Choice {
@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// What spreads along another axis is cut there, and what stays as it is keeps its slabs.
+    /// Cuts follow a body that spreads along another axis; one that stays as it is keeps its slabs.
     #[test]
     fn slabs_follow_what_spreads() {
         let mut choice = Choice::of(3, 0);

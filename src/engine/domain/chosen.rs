@@ -11,7 +11,7 @@ pub(super) struct Chosen {
     pub(super) particles: Vec<u32>,
     /// The mirror masks of the images that it needs of each (a set of eight bits).
     pub(super) mirror_masks: Vec<u8>,
-    /// Where those of each peer end.
+    /// End of those of each peer.
     ends: Vec<usize>,
 }
 
@@ -50,7 +50,7 @@ impl Chosen {
     }
 }
 
-/// What a task has found for a peer: entries are in the order of peers.
+/// Entries that a task has found for a peer: they are in the order of peers.
 pub(super) fn of_peer(found: &[Needed], peer: u16) -> &[Needed] {
     let start = found.partition_point(|entry| entry.peer < peer);
     let end = found.partition_point(|entry| entry.peer <= peer);

@@ -1,4 +1,4 @@
-//! What the ranks of a decomposition would own and receive, before there is a particle.
+//! Particles that the ranks of a decomposition would own and receive, before there is one.
 
 use std::f64::consts::{FRAC_PI_4, FRAC_PI_6};
 
@@ -10,14 +10,14 @@ use model::Case;
 use numerics::kernel::SUPPORT;
 use populate::{self, Share};
 
-/// How the sites of each body spread along each axis. Where a body's sites along one axis hang on
+/// Spread of the sites of each body along each axis. Where a body's sites along one axis hang on
 /// those along another, as in a ball, its parts are counted as if they did not.
 pub struct Forecast {
     /// Sites of each body below planes that all bodies share, by axis.
     bodies: [Vec<Cumulative>; 3],
     axes: [usize; 3],
     dimension: usize,
-    /// What reaches across a face (m).
+    /// Reach across a face (m).
     reach: f64,
 }
 
@@ -195,14 +195,14 @@ impl Forecast {
     }
 }
 
-/// What half of the sum of two supports is at most (m): what reaches across a face.
+/// Upper bound of half of the sum of two supports (m): the reach across a face.
 pub fn reach(case: &Case) -> f64 {
     let bodies = case.bodies.iter();
     let reach = bodies.map(|body| SUPPORT * body.longest_smoothing_length());
     reach.fold(0.0, f64::max)
 }
 
-/// What lies below the last plane within a way (m, signed) of another.
+/// Sites below the last plane within a way (m, signed) of another.
 fn counted(body: &Cumulative, plane: usize, way: f64) -> f64 {
     as_number(body.below(plane, way))
 }

@@ -15,7 +15,7 @@ use particles::{
     Active, ActiveMut, HaloImages, HaloPhase, Image, Mirrors, ParticleStore, copy_at_once,
 };
 
-/// Where ranks stand: each has its particles in its own slab.
+/// Slabs of ranks: each has its particles in its own slab.
 #[derive(Debug, Clone, Copy)]
 pub struct Reaches<'a> {
     /// The slabs.
@@ -44,9 +44,9 @@ pub struct Halo {
     own: Vec<Image>,
     /// Halo particles of lower ranks with their images, [`Self::own`], those of higher ranks.
     others: Vec<Image>,
-    /// How many of them are of lower ranks or stand behind a plane.
+    /// Number of them that are of lower ranks or behind a plane.
     below: usize,
-    /// What the tasks found, one after the other: see [`Needed`].
+    /// Needs that the tasks found, one after the other: see [`Needed`].
     found: Vec<Vec<Needed>>,
     collector: Collector,
 }
@@ -255,7 +255,7 @@ impl Halo {
         &self.peers
     }
 
-    /// What [`Self::others`] are beside this rank's own particles.
+    /// Images beside this rank's own particles: [`Self::others`].
     #[must_use]
     pub fn images(&self) -> HaloImages<'_> {
         HaloImages {

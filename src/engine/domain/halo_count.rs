@@ -1,5 +1,5 @@
-//! How much ranks would hear of each other in some slabs, counted from particles that stand on any
-//! ranks.
+//! Number of particles that ranks would receive of each other in some slabs, counted from particles
+//! on any ranks.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 

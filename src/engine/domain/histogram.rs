@@ -12,14 +12,14 @@ use comm::Comm;
 pub struct Histogram {
     spans: Vec<Span>,
     counts: Vec<u64>,
-    /// What threads add to the counts.
+    /// Work that threads add to the counts.
     tallies: Vec<AtomicU64>,
 }
 
 /// The planes of one slab.
 #[derive(Debug, Clone, Copy)]
 struct Span {
-    /// Where the lowest plane is (m).
+    /// Position of the lowest plane (m).
     lower: f64,
     /// From plane to plane (m).
     width: f64,
@@ -132,7 +132,7 @@ impl Histogram {
         comm.sum_u64(&mut self.counts);
     }
 
-    /// How much of a slab lies below each plane.
+    /// Work of a slab below each plane.
     #[must_use]
     pub fn cumulate(&self, slab: usize) -> Cumulative {
         let span = &self.spans[slab];
@@ -195,7 +195,7 @@ impl Histogram {
     }
 }
 
-/// What a [`Histogram`] has below each of its planes, which are numbered from its lower end.
+/// Work of a [`Histogram`] below each of its planes, which are numbered from its lower end.
 #[derive(Debug, Clone)]
 pub struct Cumulative {
     width: f64,
@@ -232,7 +232,7 @@ impl Cumulative {
         [first.max(lower).min(upper), last.min(upper).max(lower)]
     }
 
-    /// What lies below the last plane that is not farther than `way` (m, signed) from another.
+    /// Work below the last plane that is not farther than `way` (m, signed) from another.
     #[must_use]
     #[allow(
         clippy::cast_possible_truncation,

@@ -1,4 +1,4 @@
-//! Where the particles of a case stand before its first step.
+//! Positions of the particles of a case before its first step, and their ranks.
 
 use super::balance::{Balance, split_slab};
 use super::choice::Choice;
@@ -80,14 +80,14 @@ impl InitialLayout {
         }
     }
 
-    /// What ranks would own and receive. Collective.
+    /// Particles that ranks would own and receive. Collective.
     #[must_use]
     pub fn forecast(&self, case: &Case, comm: &Comm) -> Forecast {
         let ends = around(self.boxes.iter().copied());
         Forecast::new(case, comm, ends, self.axes)
     }
 
-    /// How many levels of slabs so many ranks get, where that is not to be chosen by their halos.
+    /// Number of levels of slabs of so many ranks, where that is not to be chosen by their halos.
     #[must_use]
     pub fn known_levels(&self, case: &Case, ranks: usize) -> Option<usize> {
         let few = ranks < FEW_RANKS || case.dimension == 1;

@@ -20,7 +20,7 @@ const SHARE: usize = 4096;
 pub struct Migration {
     round: usize,
     exchange: Exchange,
-    /// Who leaves: how many ranks the owner is ahead, round and round, and the particle.
+    /// Particles that leave: the ranks that the owner is ahead, round and round, and the particle.
     leaving: Vec<[u32; 2]>,
     /// The same, as the tasks found them.
     found: Vec<Vec<[u32; 2]>>,
@@ -208,7 +208,7 @@ impl Migration {
     }
 }
 
-/// How many ranks another one is ahead, round and round.
+/// Number of ranks that another one is ahead, round and round.
 #[allow(clippy::cast_possible_truncation, reason = "ranks fit u32")]
 fn ahead_of(rank: usize, other: usize, size: usize) -> u32 {
     ((other + size - rank) % size) as u32

@@ -1,4 +1,4 @@
-//! Which rank owns what: slabs of slabs, migration, halo exchange, balance, mirror images.
+//! Ownership by ranks: slabs of slabs, migration, halo exchange, balance, mirror images.
 
 mod balance;
 mod choice;

@@ -1,4 +1,4 @@
-//! Which ranks stand near each other, as their slabs tell.
+//! Ranks that are near each other, by their slabs.
 
 use super::needs::ROUNDING;
 use super::nested::{Decomposition, NestedSlabs, Slab};
@@ -57,7 +57,7 @@ impl NestedSlabs {
     }
 }
 
-/// What is within a range (m) of a region.
+/// Surroundings of a region within a range (m).
 struct Within {
     region: Brick,
     range: f64,
@@ -80,7 +80,7 @@ impl Within {
         dot(&gaps, &gaps) < range * range
     }
 
-    /// Where it ends along an axis (m), or somewhat beyond.
+    /// Its ends along an axis (m), or somewhat beyond.
     fn ends(&self, axis: usize) -> [f64; 2] {
         let range = MARGIN * self.range;
         [
@@ -99,7 +99,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(400))]
 
-        /// Who is near is who a look at all regions finds, and two ranks are near each other or neither is.
+        /// A look at all regions finds the same ranks, and two are near each other or neither is.
         #[test]
         fn all_that_is_near_is_told(
             faces in prop::collection::vec(-6_i8..=6, 0..50),

@@ -1,4 +1,4 @@
-//! Who needs which particles, and which images of them.
+//! Particles that ranks need, and the images of them.
 
 use numerics::ordered::{disordered, ordered};
 use particles::{Mirrors, mirror_masks};
@@ -25,7 +25,7 @@ impl Extent {
         reach: 0.0,
     };
 
-    /// How many words tell one.
+    /// Number of words of one.
     pub(super) const WORDS: usize = 7;
 
     #[inline]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use populate::Brick;
 
-/// Who owns a point.
+/// Division of space among ranks.
 pub trait Decomposition {
     /// The rank that owns a position (m).
     fn owner(&self, position: &[f64; 3]) -> usize;
@@ -53,8 +53,8 @@ impl Slab {
         self.first..self.end
     }
 
-    /// How many slabs the next level cuts it into: of its last level one for each rank, else the
-    /// smallest number that, if all levels cut as often, is enough for its ranks.
+    /// Number of slabs into which the next level cuts it: of its last level one for each rank, else
+    /// the smallest that, if all levels cut as often, is enough for its ranks.
     pub(super) fn parts(&self) -> usize {
         let ranks = self.end - self.first;
         if self.levels == 1 {
@@ -101,7 +101,7 @@ impl Slab {
         self.levels > 0 && self.end - self.first > 1
     }
 
-    /// Which part of so many, between these faces (m), a coordinate is in.
+    /// Index of the part of so many, between these faces (m), that holds a coordinate.
     #[inline]
     pub(super) fn part_at(&self, x: f64, parts: usize, faces: &[f64]) -> usize {
         let (mut least, mut end) = (0, parts - 1);
@@ -170,7 +170,7 @@ impl NestedSlabs {
         &self.faces
     }
 
-    /// How many levels there are.
+    /// Number of levels.
     #[must_use]
     pub fn levels(&self) -> usize {
         self.levels
@@ -188,7 +188,7 @@ impl NestedSlabs {
         self.axes
     }
 
-    /// How many ranks there are.
+    /// Number of ranks.
     #[must_use]
     pub fn ranks(&self) -> usize {
         self.faces.len() + 1

@@ -1,4 +1,4 @@
-//! Who owns which particles, kept even while they move.
+//! Ownership of particles, kept even while they move.
 
 use rayon::prelude::*;
 
@@ -19,13 +19,13 @@ pub struct Partition {
     balance: Balance,
     rank_speeds: RankSpeeds,
     migration: Migration,
-    /// Where levels are to be chosen.
+    /// Choice of levels, if the case leaves it open.
     choice: Option<Choice>,
-    /// How often levels or axes have changed.
+    /// Number of changes of levels or axes.
     changes: u64,
     /// Most steps between two balances; zero for none.
     every: u64,
-    /// What steps since the last balance have lost by unevenness.
+    /// Loss of steps since the last balance by unevenness.
     loss: Loss,
     /// Counted work of this rank since its speed was measured.
     done: u64,
@@ -36,7 +36,7 @@ pub struct Partition {
 /// Regular balances from one look at levels and axes to the next.
 const REVISED: u64 = 8;
 
-/// What a balance costs, in steps.
+/// Cost of a balance, in steps.
 const PRICE: f64 = 0.1;
 
 /// Time that ranks have waited for the busiest one since the last balance, as its work is counted.
@@ -232,7 +232,7 @@ impl Partition {
             .migrate(comm, &self.slabs, particles, near, reach);
     }
 
-    /// How often levels or axes have changed since the start of this process.
+    /// Number of changes of levels or axes since the start of this process.
     #[must_use]
     pub fn changes(&self) -> u64 {
         self.changes

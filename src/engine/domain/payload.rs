@@ -1,4 +1,4 @@
-//! What particles show to other ranks beside their fields.
+//! Data of particles for other ranks beside their fields.
 
 /// Bytes of this rank's particles, and those that it has received of halo particles.
 pub trait Payload: Sync {
@@ -8,6 +8,6 @@ pub trait Payload: Sync {
     /// Those of a particle of this rank.
     fn of(&self, particle: usize) -> &[u8];
 
-    /// Where those of so many halo particles go, one after the other.
+    /// Buffer for those of so many halo particles, one after the other.
     fn received(&mut self, halo: usize) -> &mut [u8];
 }

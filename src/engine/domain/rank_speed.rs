@@ -1,4 +1,4 @@
-//! How fast each rank gets through counted work, by the clock.
+//! Speed of each rank in counted work, by the clock.
 
 use comm::Comm;
 
@@ -21,7 +21,7 @@ pub struct RankSpeeds {
 /// Seconds below which the clock says little: shares stay as they are.
 const SHORTEST: f64 = 0.05;
 
-/// How far shares go towards what was measured: what slows a rank for a moment is not chased.
+/// Part of the way of shares to what was measured: a short delay of a rank is not chased.
 const FOLLOWED: f64 = 0.25;
 
 /// Factor that a share may be from the even one.

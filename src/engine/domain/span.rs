@@ -1,5 +1,5 @@
-//! Where some particles are and how they move, in twelve numbers, and how long a step two such sets
-//! allow.
+//! Extents of positions and velocities of some particles, in twelve numbers, and the longest step
+//! that two such sets allow.
 
 use numerics::ordered::{disordered, ordered};
 use numerics::vector::norm;
@@ -183,8 +183,8 @@ mod tests {
         span
     }
 
-    /// What flies apart or misses has all the time it wants; what meets has the time to come as
-    /// near as h, or to fly h.
+    /// Sets that fly apart or miss have all the time they want; those that meet have the time to
+    /// come as near as h, or to fly h.
     #[test]
     fn steps_follow_gap_and_closing_speed() {
         let (h, at_rest) = (0.1, ball(0.0, 0.0));

@@ -1,4 +1,4 @@
-//! What each rank owns and exchanges in a step, counted by one process for any number of ranks.
+//! Particles and messages of each rank in a step, counted by one process for any number of ranks.
 //!
 //! Owners, peers and needs are those of the halo itself, by the same code.
 
@@ -10,28 +10,28 @@ use super::needs::{Extent, Finder, MYSELF, Needed};
 use super::nested::{Decomposition, NestedSlabs};
 use particles::Mirrors;
 
-/// What a rank owns, and what a step brings it.
+/// Particles that a rank owns, and those that a step brings it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Its own particles.
     pub owned: u64,
     /// Particles of other ranks.
     pub halo: u64,
-    /// What its sums run over beside its own particles: those of other ranks, and images of all of
-    /// them behind symmetry planes.
+    /// Images that its sums run over beside its own particles: particles of other ranks, and
+    /// images of all of them behind symmetry planes.
     pub images: u64,
     /// Ranks that it exchanges messages with.
     pub peers: u64,
 }
 
-/// What a rank sends to a peer in each exchange.
+/// Message of a rank to a peer in each exchange.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sent {
-    /// Who sends.
+    /// Sender.
     pub from: usize,
-    /// To whom.
+    /// Receiver.
     pub to: usize,
-    /// How many particles, perhaps none.
+    /// Number of particles, perhaps none.
     pub particles: u64,
 }
 
@@ -86,7 +86,7 @@ pub fn tally(
 
 /// Particles in the order of their ranks.
 struct Dealt {
-    /// Where those of each rank begin, and the end.
+    /// Beginning of those of each rank, and the end.
     starts: Vec<usize>,
     positions: Vec<[f64; 3]>,
     reach: Vec<f64>,
@@ -186,7 +186,7 @@ impl Boxes {
     }
 }
 
-/// What others need of a rank.
+/// Particles of a rank that others need.
 struct Needs {
     /// Images of its own particles that it needs itself.
     own_images: u64,

@@ -36,18 +36,18 @@ pub struct Census {
     pub fragments: Vec<Fragment>,
     /// All matter.
     pub total: Share,
-    /// What is in fragments.
+    /// Share in fragments.
     pub in_fragments: Share,
-    /// What hangs together in too few particles.
+    /// Share that hangs together in too few particles.
     pub dust: Share,
-    /// What belongs to no fragment by its state.
+    /// Share that belongs to no fragment by its state.
     pub excluded: Share,
     /// The label of each of this rank's particles; `u64::MAX` of what belongs to no fragment.
     pub labels: Vec<u64>,
 }
 
 impl Census {
-    /// How many fragments there are; on rank 0.
+    /// Number of fragments; on rank 0.
     #[must_use]
     pub fn count(&self) -> u64 {
         self.fragments.iter().map(|f| f.copies).sum()

@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 use particles::Image;
 
-/// Where a particle or an image of it stands.
+/// Place of a particle or of an image of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
     /// Position (m).
     pub position: [f64; 3],
-    /// How far it reaches (m).
+    /// Reach (m).
     pub reach: f64,
-    /// Which it is.
+    /// The particle or image.
     pub image: Image,
 }
 

@@ -11,7 +11,7 @@ use numerics::collector::Collector;
 /// Mark of sets that another rank may have joined with some of its own.
 pub(super) const TOUCHES: u32 = 1 << 31;
 
-/// What hangs together with a particle.
+/// Connected component of a particle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Member {
     /// Smallest id of it all.
@@ -38,7 +38,7 @@ pub struct Labels {
     collector: Collector,
 }
 
-/// Who hangs together with whom.
+/// Connected components of all particles.
 #[derive(Debug, Default)]
 pub struct Members {
     /// Particles of this rank, then halo particles.
@@ -56,13 +56,13 @@ impl Labels {
         self.members.sets.reset(n);
     }
 
-    /// Where links are joined: particles of this rank, then halo particles.
+    /// Sets that links join: particles of this rank, then halo particles.
     #[must_use]
     pub fn sets(&self) -> &Sets {
         &self.members.sets
     }
 
-    /// Who hangs together with whom, after [`Self::finish`].
+    /// Connected components, after [`Self::finish`].
     #[must_use]
     pub fn members(&self) -> &Members {
         &self.members
@@ -141,7 +141,7 @@ impl Labels {
 }
 
 impl Members {
-    /// What hangs together with a particle of this rank.
+    /// Connected component of a particle of this rank.
     #[must_use]
     pub fn of(&self, i: usize) -> Member {
         let set = self.sets.set(u32::try_from(i).unwrap_or(u32::MAX));

@@ -41,8 +41,8 @@ struct Links<'a> {
     smaller: Vec<(u32, u32)>,
 }
 
-/// Who is linked with whom: labels what hangs together of all ranks. `others` are the images that
-/// stand near this rank's particles. Collective.
+/// Links particles, and labels connected components of all ranks. `others` are the images near
+/// this rank's particles. Collective.
 pub(super) fn link(
     (comm, mut halo): (&Comm, Option<&mut Halo>),
     matter: &Matter,
@@ -202,7 +202,7 @@ impl<'a> Links<'a> {
         });
     }
 
-    /// Which of this rank's particles are bridges, and room for halo particles.
+    /// Flags of this rank's particles that are bridges, and room for halo particles.
     fn bridges(&self, cuts: bool) -> Vec<u8> {
         use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
         let mut bridges: Vec<AtomicU8> = Vec::new();

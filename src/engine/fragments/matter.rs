@@ -4,7 +4,7 @@ use model::{Body, Case, FragmentOptions, Include, edge};
 use particles::Image;
 use particles::Mirrors;
 
-/// What hangs together.
+/// Rule by which particles hang together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rule {
     /// Largest distance of linked particles, over the mean of their sizes at the start.
@@ -60,7 +60,7 @@ pub struct Matter<'a> {
     pub plastic_strain: &'a [f64],
 }
 
-/// What stands about a rank's particles.
+/// Surroundings of a rank's particles.
 #[derive(Debug, Clone, Copy)]
 pub struct Surroundings<'a> {
     /// The symmetry planes.
@@ -69,7 +69,7 @@ pub struct Surroundings<'a> {
     pub others: &'a [Image],
 }
 
-/// How large the particles of a body are at the start.
+/// Size of the particles of a body at the start.
 #[derive(Debug, Clone, Copy)]
 pub struct FirstSizes {
     /// Spacing (m); the finest where it varies.
@@ -107,7 +107,7 @@ impl FirstSizes {
     }
 }
 
-/// How far a particle of a size (m) reaches: two are linked within the sum of both.
+/// Reach of a particle of a size (m): two are linked within the sum of both.
 #[must_use]
 pub fn link_reach(link: f64, size: f64) -> f64 {
     0.5 * link * size

@@ -1,12 +1,12 @@
 //! Labels that are one over all ranks: merged pair by pair of ranks up a tree.
 //!
-//! What travels are labels that cross faces between ranks, never particles; each rank of the tree
+//! Messages hold labels that cross faces between ranks, never particles. Each rank of the tree
 //! hands on one row for each label, whatever the number of links.
 
 use comm::{Comm, Exchange};
 
-/// What a rank knows of a label that crosses a face: that it is one with another, and what this
-/// rank adds to it.
+/// Facts of a rank about a label that crosses a face: that it is one with another, and the marks
+/// and particles that this rank adds to it.
 #[derive(
     Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, bytemuck::Pod, bytemuck::Zeroable,
 )]
@@ -32,7 +32,7 @@ pub struct Merger {
     exchange: Exchange,
 }
 
-/// What rows are joined with.
+/// Memory in which rows are joined.
 #[derive(Debug, Default)]
 struct Forest {
     labels: Vec<u64>,

@@ -18,7 +18,7 @@ pub struct Sets {
     counts: Vec<AtomicU32>,
 }
 
-/// What [`Sets::finish`] has found of a set.
+/// Set that [`Sets::finish`] has found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Set {
     /// Its smallest element.
@@ -27,7 +27,7 @@ pub struct Set {
     pub label: u64,
     /// Marks of all its elements.
     pub marks: u32,
-    /// How many of the first elements it has.
+    /// Number of the first elements that it has.
     pub count: u32,
 }
 

@@ -14,7 +14,7 @@ pub struct Sums {
     sums: Vec<ExactSum>,
 }
 
-/// Where the masses by body begin.
+/// Index of the first of the masses by body.
 pub const BODIES: usize = 20;
 
 /// Values of [`Sums`].

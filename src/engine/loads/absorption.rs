@@ -37,7 +37,7 @@ struct Zone {
     shear_modulus: f64,
 }
 
-/// What moves a particle of a case with absorbing zones.
+/// Motion of a particle beside forces in a case with absorbing zones.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Absorbed {
     prescribed: Prescribed,
@@ -113,7 +113,7 @@ impl Absorption {
         !self.zones.is_empty()
     }
 
-    /// How many there are.
+    /// Number of zones.
     pub fn count(&self) -> usize {
         self.zones.len()
     }
@@ -138,7 +138,7 @@ impl Absorption {
         })
     }
 
-    /// What moves a particle of a body that has a rate (1/s) and to which this is prescribed.
+    /// Motion of a particle of a body that has a rate (1/s) and to which this is prescribed.
     #[inline(always)]
     pub fn of(&self, prescribed: Prescribed, body: u32, rate: f64) -> Absorbed {
         Absorbed {

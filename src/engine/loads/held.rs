@@ -36,7 +36,7 @@ impl Loads {
     }
 }
 
-/// What prescribed velocities and rigid bodies do to particles in a half kick.
+/// Effect of prescribed velocities and rigid bodies on particles in a half kick.
 struct Held<'a> {
     loads: &'a Loads,
     particles: &'a ParticleStore,

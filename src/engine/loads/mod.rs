@@ -19,7 +19,7 @@ use numerics::exact_sum::ExactSum;
 use numerics::vector::cross;
 use particles::ParticleStore;
 
-/// Which of the two prescribed velocities of a step.
+/// Stage of the two prescribed velocities of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VelocityStage {
     /// That after the first half kick.
@@ -28,7 +28,7 @@ pub(crate) enum VelocityStage {
     End,
 }
 
-/// What is prescribed of the velocity of a particle in one step.
+/// Prescribed velocity of a particle in one step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Prescribed {
     /// The ledger of who prescribes each component, if anybody does.
@@ -57,7 +57,7 @@ impl Prescribed {
     }
 }
 
-/// What moves a particle beside forces.
+/// Motion of a particle beside forces.
 pub(crate) trait Prescribe: Copy + Send {
     /// Replaces what forces do (`total`, m/s²) by what takes the velocity `v` (m/s) to the stage
     /// in a half kick, of which there are `per_half` in a second.
@@ -122,7 +122,7 @@ impl Prescribe for Prescribed {
     }
 }
 
-/// What the loads of a case prescribe in the current step.
+/// Prescribed motions by the loads of a case in the current step.
 #[derive(Debug, Default)]
 pub struct Loads {
     /// By bit of [`particles::ParticleStore::load`]: prescribed velocities, then rigid
@@ -232,7 +232,7 @@ impl Loads {
         (held.chain(rigid).enumerate()).fold(0, |bits, (k, is)| bits | u32::from(is) << k)
     }
 
-    /// What is prescribed to a particle with these bits; on each axis the last load holds.
+    /// Prescribed velocity of a particle with these bits; on each axis the last load holds.
     #[inline]
     pub(crate) fn of(&self, bits: u32) -> Prescribed {
         let mut all = Prescribed::default();

@@ -79,7 +79,7 @@ pub(super) fn sum_over<const N: usize>(
     all((0..owned.div_ceil(GRAIN)).into_par_iter(), of_chunk)
 }
 
-/// What `add` puts into sums for pieces of the store.
+/// Sums that `add` makes over pieces of the store.
 fn all<const N: usize, P: Send>(
     pieces: impl ParallelIterator<Item = P>,
     add: impl Fn(GatheredSums<N>, P) -> GatheredSums<N> + Sync + Send,

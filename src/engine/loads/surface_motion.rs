@@ -1,4 +1,4 @@
-//! Where rigid surfaces stand in a step, and how they move.
+//! Positions and motion of rigid surfaces in a step.
 
 use crate::domain::Span;
 use model::{RigidSurface, SurfaceShape};
@@ -7,7 +7,7 @@ use numerics::vector::{cross, dot, norm};
 /// A rigid surface in one step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SurfaceStep {
-    /// How far it has moved since time zero at the end of the step (m).
+    /// Displacement since time zero at the end of the step (m).
     shift: [f64; 3],
     /// Velocities at the beginning, in the middle and at the end (m/s).
     velocity: [[f64; 3]; 3],

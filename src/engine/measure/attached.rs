@@ -17,14 +17,14 @@ struct Run {
 /// The largest piece of what fills a window, by columns along its last coordinate.
 #[derive(Debug)]
 pub struct Attached {
-    /// Where it is.
+    /// Its window.
     pub window: Window,
     /// Fractions by voxel of the columns that are kept, in [`UNIT`]s.
     fractions: Vec<u16>,
     /// The kept column that each column is or is the image of.
     images: Vec<usize>,
     runs: Vec<Run>,
-    /// Where the runs of each column begin, and those of the last end.
+    /// Beginning of the runs of each column, and the end of those of the last.
     columns: Vec<usize>,
     /// Columns that have not held the body at the start: beside its rim, and in holes that it is made with.
     outside: Vec<bool>,
@@ -205,7 +205,7 @@ impl Attached {
         !self.outside[column]
     }
 
-    /// Where it ends in each column, upwards and downwards (m): where the fraction passes a half.
+    /// Its ends in each column, upwards and downwards (m): there the fraction passes a half.
     pub fn ends(&self) -> impl Iterator<Item = Option<[f64; 2]>> {
         let depth = self.window.depth();
         (self.images.iter().enumerate()).map(move |(column, image)| {
@@ -230,7 +230,7 @@ impl Attached {
         self.window.lower[2] + (k + 0.5) * self.window.edge
     }
 
-    /// How far (m) beyond the middle of a voxel the fraction is a half, towards an emptier one.
+    /// Distance (m) beyond the middle of a voxel to a fraction of a half, towards an emptier one.
     fn past(&self, inside: u16, outside: u16) -> f64 {
         let (inside, outside) = (f64::from(inside), f64::from(outside.min(HALF - 1)));
         // A voxel fuller than full says nothing about where its face is.
@@ -272,7 +272,7 @@ fn roots(window: &Window, runs: &[Run], columns: &[usize]) -> Vec<u32> {
     (0..runs.len()).map(|run| sets.root(index(run))).collect()
 }
 
-/// Which runs belong to the largest piece.
+/// Flags of the runs that belong to the largest piece.
 fn largest(window: &Window, runs: &[Run], columns: &[usize]) -> Vec<bool> {
     let roots = roots(window, runs, columns);
     let mut sizes = vec![0_u64; runs.len()];

@@ -1,4 +1,4 @@
-//! What there is of each body: the rows of `bodies.csv`.
+//! Figures of each body: the rows of `bodies.csv`.
 
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ use numerics::ordered::{disordered, ordered};
 use numerics::vector::{cross, norm};
 use particles::{Active, Block, GRAIN, KeptBlocks, ParticleStore};
 
-/// What there is of a body (SI), the images behind symmetry planes with it. What no particle has
-/// is not a number.
+/// Figures of a body (SI), the images behind symmetry planes with it. Values that no particle has
+/// are NaN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyFigures {
     /// Number of its particles.
@@ -67,7 +67,7 @@ const EXTREMES: usize = 17;
 /// Extremes that hang on the size of a particle.
 const SIZED: usize = 6;
 
-/// What some particles of a body come to.
+/// Sums and extremes of some particles of a body.
 struct Part {
     sums: GatheredSums<SUMS>,
     extremes: [f64; EXTREMES],

@@ -167,7 +167,7 @@ fn cloud(view: &View, sums: &Sums, comm: &Comm) -> (Vec<Figure>, Vec<Distributio
     (figures, distributions)
 }
 
-/// What mass is told by, of numbers between such limits.
+/// Scales of mass by numbers between such limits.
 fn scales(ranges: &[[f64; 2]; NUMBERS]) -> [Scale; 6] {
     let between = |number: usize| Scale {
         number,

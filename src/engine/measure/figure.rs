@@ -18,7 +18,7 @@ pub struct Figure {
     pub name: Cow<'static, str>,
     /// Value.
     pub value: Told,
-    /// How uncertain it is, in the same unit, if that is known.
+    /// Uncertainty in the same unit, if that is known.
     pub uncertainty: Option<f64>,
     /// SI unit; empty for none.
     pub unit: &'static str,
@@ -65,11 +65,11 @@ pub struct Distribution {
     pub along: &'static str,
     /// SI unit of the values.
     pub unit: &'static str,
-    /// Where each bin begins and ends, and its value.
+    /// Beginning and end of each bin, and its value.
     pub bins: Vec<[f64; 3]>,
 }
 
-/// What a measure tells at a time.
+/// Findings of a measure at a time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Findings {
     /// Figures in a fixed order.

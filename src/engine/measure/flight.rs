@@ -1,4 +1,4 @@
-//! How debris flies: each particle against the plane and the axis, and mass by any of it.
+//! Flight of debris: each particle against the plane and the axis, and mass by any of it.
 
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use particles::Mirrors;
 /// All mass, in whole numbers.
 const UNIT: f64 = 17_592_186_044_416.0;
 
-/// How a particle's image flies.
+/// Flight of a particle's image.
 #[derive(Clone, Copy)]
 pub struct Flight {
     /// Height (m) above the plane.
@@ -31,7 +31,7 @@ pub struct Flight {
     pub lateral: f64,
 }
 
-/// How many numbers [`Flight::numbers`] tells.
+/// Length of [`Flight::numbers`].
 pub const NUMBERS: usize = 5;
 
 /// Place of the height in them, of the others likewise.
@@ -50,22 +50,22 @@ impl Flight {
     }
 }
 
-/// What is debris, and how it is looked at.
+/// Debris, and the view of it.
 pub struct View<'a> {
     pub debris: &'a Debris,
     pub matter: &'a Matter<'a>,
     pub frame: Frame,
     /// The axis through the middle of all, across the flight.
     pub axis: [f64; 2],
-    /// Which particles are debris.
+    /// Flags of the particles that are debris.
     pub is_debris: Vec<bool>,
     /// Codes of the images behind symmetry planes that the flight does not run along, and of the particle itself.
     mirror_masks: Vec<u8>,
-    /// How many images fly as each of them does, itself with them.
+    /// Number of images that fly as each of them does, itself with them.
     alike: u32,
 }
 
-/// How much of the debris flies how, by one of the numbers of [`Flight::numbers`].
+/// Scale of debris by one of the numbers of [`Flight::numbers`].
 #[derive(Clone, Copy)]
 pub struct Scale {
     pub number: usize,
@@ -81,7 +81,7 @@ impl Scale {
     }
 }
 
-/// Which particles are debris.
+/// Flags of the particles that are debris.
 fn is_debris(debris: &Debris, of: Option<(&Slab, &Remains)>, matter: &Matter) -> Vec<bool> {
     let base = dot(&debris.direction, &debris.point);
     let is = |i: usize| {
@@ -118,13 +118,13 @@ impl<'a> View<'a> {
         }
     }
 
-    /// How many images each of the flights of a particle speaks for.
+    /// Number of images that each of the flights of a particle speaks for.
     #[must_use]
     pub fn alike(&self) -> f64 {
         f64::from(self.alike)
     }
 
-    /// How a particle flies, and those of its images that fly otherwise.
+    /// Flight of a particle, and those of its images that fly otherwise.
     pub fn flights(&self, i: usize) -> impl Iterator<Item = Flight> {
         let base = dot(&self.debris.direction, &self.debris.point);
         let (x, v) = (&self.matter.position[i], &self.matter.velocity[i]);

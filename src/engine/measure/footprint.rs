@@ -1,4 +1,4 @@
-//! Where a struck body has stood at the start, seen along its normal.
+//! Section of a struck body at the start, seen along its normal.
 
 use super::frame::Frame;
 use super::matter::Matter;

@@ -35,8 +35,8 @@ impl Frame {
         self.axes.map(|axis| dot(&axis, x))
     }
 
-    /// Where symmetry planes cut the two vectors across the normal (m) that are normal to them, and the bits of
-    /// these planes in the mirror masks of images.
+    /// Places (m) of symmetry planes on the vectors across the normal that are normal to them, and
+    /// the bits of these planes in the mirror masks of images.
     #[must_use]
     pub fn planes(&self, mirrors: &Mirrors) -> ([Option<f64>; 2], u8) {
         let (mut planes, mut bits) = ([None; 2], 0);

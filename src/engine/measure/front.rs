@@ -88,8 +88,8 @@ fn read(line: &FrontLine, matter: &Matter, comm: &Comm) -> Line {
 }
 
 impl Line {
-    /// How far (m) along the line pressure is beyond a threshold (Pa): to where the straight line between the
-    /// last piece beyond it and the next one that holds matter passes it.
+    /// Way (m) along the line with pressure beyond a threshold (Pa): to where the straight line
+    /// between the last piece beyond it and the next one that holds material passes it.
     fn passes(&self, threshold: f64) -> Option<f64> {
         let last = self.pressures.iter().rposition(|&p| p >= threshold)?;
         let middle = |k: usize| {

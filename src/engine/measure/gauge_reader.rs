@@ -1,8 +1,8 @@
-//! What one gauge reads of the particles of a rank.
+//! Reading of one gauge from the particles of a rank.
 //!
-//! A fixed gauge reads the mean of the matter about it, weighted with kernel and volume (Shepard):
+//! A fixed gauge reads the mean of the particles about it, weighted with kernel and volume (Shepard):
 //! `Σ V_j W_j f_j / Σ V_j W_j`, of all images in whose support it is. The sum below, its *coverage*,
-//! is about one inside of matter, half at a face and zero in the void, where there is nothing to read.
+//! is about one inside of material, half at a face and zero in the void, where there is nothing to read.
 //! Terms are added in canonical order, the images behind each set of symmetry planes after the
 //! particles themselves, to eight sums in turn and these in a fixed order: a pure function of the state.
 
@@ -19,14 +19,14 @@ use particles::neighbours::{Lists, PointSearch};
 /// Sums of a gauge before its readings: coverage and position, the latter of a carried gauge alone.
 pub const FIRST: usize = 4;
 
-/// What gauges read.
+/// Particles that gauges read.
 pub struct Matter<'a> {
     pub case: &'a Case,
     pub particles: &'a ParticleStore,
     pub lists: &'a Lists,
 }
 
-/// How means are made.
+/// Kernel and mirrors of means.
 #[derive(Debug)]
 pub struct Means {
     pub kernel: Kernel,
@@ -36,12 +36,12 @@ pub struct Means {
 /// Memory to read a gauge.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    /// What it reads.
+    /// Images that it reads.
     pub near: Near,
     search: PointSearch,
 }
 
-/// What one gauge needs from reading to reading.
+/// State of one gauge from reading to reading.
 #[derive(Debug)]
 pub struct Reader {
     pub gauge: Gauge,

@@ -1,7 +1,7 @@
-//! What particles of several ranks give to one gauge.
+//! Shares of several ranks in one gauge.
 //!
-//! Most gauges read particles of one rank, whose sums all ranks hear as they are. Where several have
-//! particles near a gauge, their terms are put in canonical order and added as one rank would.
+//! Most gauges read particles of one rank, whose sums all ranks receive as they are. Where several
+//! have particles near a gauge, their terms are put in canonical order and added as one rank would.
 
 use super::gauge_reader::{Matter, Means, Reader, Scratch};
 use super::near::{LaneSum, One};
@@ -111,7 +111,7 @@ impl Shares {
     }
 }
 
-/// What canonical order goes by: first the planes that an image is behind.
+/// Key of the canonical order: first the planes that an image is behind.
 fn key(matter: &Matter, one: &One) -> [u64; KEY] {
     let [group, index] = one.listed;
     let [column, along] = matter.lists.sequence().rank_in_order(group, index);

@@ -20,7 +20,7 @@ use particles::{GRAIN, ParticleStore};
 #[derive(Debug)]
 pub struct Gauges {
     means: Means,
-    /// What any of them reads, with the first column of each.
+    /// Readings of any of them, with the first column of each.
     readings: Vec<(Reading, usize)>,
     /// Column of the normal stress, if any reads it.
     along: Option<usize>,
@@ -34,16 +34,16 @@ pub struct Gauges {
     collector: Collector,
 }
 
-/// What a gauge has read.
+/// Reading of a gauge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GaugeRow {
     /// Index of the gauge.
     pub gauge: usize,
-    /// Where it is (m).
+    /// Its position (m).
     pub position: [f64; 3],
-    /// `Σ V W` about it; one of a carried gauge, zero where there is no matter.
+    /// `Σ V W` about it; one of a carried gauge, zero where there is no material.
     pub coverage: f64,
-    /// By column; nothing where the gauge does not read it. Not a number without matter.
+    /// By column; nothing where the gauge does not read it. NaN without material.
     pub values: Vec<Option<f64>>,
 }
 
@@ -146,7 +146,7 @@ impl Gauges {
         self.carried().count()
     }
 
-    /// What the gauges read whose turn it is; `carriers` are those of [`Self::choose`]. Right after
+    /// Readings of gauges whose turn it is; `carriers` are those of [`Self::choose`]. Right after
     /// a step, before particles change; on all ranks the same. Collective.
     pub fn read(
         &mut self,
@@ -243,7 +243,7 @@ const CARRIES: u32 = 1;
 /// Gauges that a task reads at least.
 const AT_ONCE: usize = 16;
 
-/// What the sums of a gauge say, among so many columns and with that of the normal stress.
+/// Row of a gauge by its sums, among so many columns and with that of the normal stress.
 fn row(reader: &Reader, gauge: usize, (columns, along): (usize, Option<usize>)) -> GaugeRow {
     let (first, rest) = reader.sums.split_at(FIRST);
     let coverage = first[0];
@@ -294,5 +294,5 @@ fn nearest(gauge: &Gauge, case: &Case, particles: &ParticleStore, lists: &Lists)
     best
 }
 
-/// How often a search for the nearest particle reaches twice as far: 2²⁰ smoothing lengths.
+/// Times that a search for the nearest particle reaches twice as far: 2²⁰ smoothing lengths.
 const DOUBLINGS: u32 = 20;

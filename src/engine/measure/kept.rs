@@ -1,4 +1,4 @@
-//! What measures keep from step to step, and all that `measures.csv` tells.
+//! Memory of measures from step to step, and all that `measures.csv` holds.
 
 use super::bodies::KeptBodies;
 use super::figure::Findings;
@@ -54,7 +54,7 @@ fn impulse(slab: &Slab, matter: &Matter, comm: &Comm) -> f64 {
     whole::Whole::new(&matter.mirrors).sum(sum)
 }
 
-/// What measures remember of the start. Collective.
+/// Memory of measures of the start. Collective.
 #[must_use]
 pub fn remember(matter: &Matter, comm: &Comm) -> Vec<Remembered> {
     let all = matter.case.measure.measures.iter();
@@ -84,8 +84,8 @@ pub fn mark_zones(case: &Case, particles: &mut ParticleStore) {
     }
 }
 
-/// What all measures of the case find at a time (s), in their order; `particles` are those of the matter,
-/// which regions read: without them these find nothing. Collective.
+/// Findings of all measures of the case at a time (s), in their order; `particles` are those of
+/// `matter`, which regions read: without them these find nothing. Collective.
 #[must_use]
 pub fn findings(
     time: f64,

@@ -24,7 +24,7 @@ impl Mask {
         Self { counts, cells }
     }
 
-    /// How many cells have the property.
+    /// Number of cells that have the property.
     #[must_use]
     pub fn count(&self) -> usize {
         self.cells.iter().filter(|&&is| is).count()
@@ -37,7 +37,7 @@ impl Mask {
         self.only(largest(self.parts().iter().filter(inside)))
     }
 
-    /// Which cells belong to parts that reach the border, and all others there.
+    /// Flags of cells that belong to parts that reach the border, and of all others there.
     #[must_use]
     pub fn at_border(&self) -> Vec<bool> {
         let [rows, across] = self.counts;

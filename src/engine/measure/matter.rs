@@ -1,4 +1,4 @@
-//! What measures look at: this rank's matter, and sums over that of all ranks.
+//! Input of measures: this rank's particles, and sums over those of all ranks.
 
 use rayon::prelude::*;
 

@@ -1,8 +1,8 @@
-//! What a run measures of itself: figures that answer questions, in place of particles.
+//! Measures of a run: figures that answer questions, in place of particles.
 //!
 //! A file measures one kind of thing. All of them give the same bits on any ranks and threads:
-//! sums are exact ([`numerics::exact_sum`]), extremes compare bits, and whoever is nearest
-//! is told by distance and then by id. Of a model with symmetry planes they report the whole, see
+//! sums are exact ([`numerics::exact_sum`]), extremes compare bits, and the nearest particle
+//! is chosen by distance and then by id. Of a model with symmetry planes they report the whole, see
 //! [`Whole`].
 
 mod attached;

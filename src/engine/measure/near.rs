@@ -1,4 +1,4 @@
-//! What a gauge reads: images of particles with their weights, and sums over them.
+//! Input of a gauge: images of particles with their weights, and sums over them.
 
 use numerics::lanes::{LANES, Lanes};
 
@@ -29,12 +29,12 @@ pub struct One {
     pub i: usize,
     pub mirror_mask: u8,
     pub weight: f64,
-    /// Where it stands in the lists: group and place.
+    /// Its place in the lists: group and place.
     pub listed: [usize; 2],
 }
 
 impl Near {
-    /// How many.
+    /// Number of images.
     #[must_use]
     pub fn len(&self) -> usize {
         self.count

@@ -23,7 +23,7 @@ const LEAST_AROUND: f64 = 0.25;
 /// Lips are looked for as far as this many radii of the hole.
 const FARTHEST: f64 = 3.0;
 
-/// What has become of a plate, the worst first.
+/// Fate of a plate, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// There is a hole through it, or what struck it is behind it.
@@ -53,7 +53,7 @@ impl Verdict {
 struct Left {
     front: f64,
     rear: f64,
-    /// What lies within a voxel of what remains.
+    /// Mass within a voxel of what remains.
     doubtful: f64,
     /// Mass of what struck that is behind the plate and has not flown past its rim.
     passed: f64,
@@ -182,7 +182,7 @@ fn sector(x: f64, y: f64) -> usize {
     sector % SECTORS
 }
 
-/// What the window tells of a plate.
+/// Shape of a plate by its window.
 struct Shape {
     hole: f64,
     clear: f64,

@@ -1,4 +1,4 @@
-//! What can be read of a particle: a field of the table, or what follows from some.
+//! Readings of a particle: a field of the table, or a quantity that follows from some.
 
 use super::near::{LaneSum, Near};
 use material::LANES;
@@ -64,7 +64,7 @@ impl Reading {
         }
     }
 
-    /// What the names of its numbers add to its own.
+    /// Endings that the names of its numbers add to its own.
     #[must_use]
     pub fn endings(self) -> &'static [&'static str] {
         match self {

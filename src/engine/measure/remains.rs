@@ -1,7 +1,7 @@
-//! What hangs together of a body that is struck, where matter has yielded.
+//! Connected rest of a body that is struck, where its material has yielded.
 //!
-//! A window is laid about all matter of the body that has flowed; in it the largest piece is what remains. What lies
-//! beside the window has not flowed and remains, too.
+//! A window is laid about all material of the body that has flowed. In it the largest piece
+//! remains. Material beside the window has not flowed and remains, too.
 
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ pub enum Belongs {
     No,
 }
 
-/// What remains of a slab.
+/// Remains of a slab.
 #[derive(Debug)]
 pub struct Remains {
     frame: Frame,
@@ -46,7 +46,7 @@ pub struct Remains {
     between: [f64; 2],
     /// Height (m) below which all remains that lies above the rear face, and that face.
     untouched: [f64; 2],
-    /// Which particles of the body belong to it; of other bodies none does.
+    /// Membership of the particles of the body; of other bodies none belongs to it.
     belongs: Vec<Belongs>,
 }
 
@@ -96,13 +96,13 @@ impl Remains {
         remains
     }
 
-    /// What of it lies in the window, if matter has flowed.
+    /// Part of it in the window, if material has flowed.
     #[must_use]
     pub fn attached(&self) -> Option<&Attached> {
         self.attached.as_ref()
     }
 
-    /// Where the body of the slab has stood at the start.
+    /// Section of the body of the slab at the start.
     #[must_use]
     pub fn footprint(&self, slab: &Slab, matter: &Matter) -> Footprint {
         Footprint::new(slab, &self.frame, slab.spacing, matter)
@@ -164,7 +164,7 @@ impl Remains {
 /// Symmetry planes that run along the normal, across one of the axes of its frame: what is behind them is not
 /// looked at.
 struct Halves {
-    /// Where they are on the first two axes (m).
+    /// Their places on the first two axes (m).
     planes: [Option<f64>; 2],
     /// Codes of images behind other planes, and of the particle itself.
     mirror_masks: Vec<u8>,
@@ -192,8 +192,8 @@ fn place(frame: &Frame, matter: &Matter, i: usize, mirror_mask: u8) -> [f64; 3] 
     )
 }
 
-/// How far (m) matter of the body that has flowed reaches between its faces, along the axes of the frame and
-/// against them; −∞ if none has. Of a body that cannot yield all has flowed. Collective.
+/// Reach (m) of flowed material of the body between its faces, along the axes of the frame and
+/// against them; −∞ if none has flowed. Of a body that cannot yield all has flowed. Collective.
 fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &Comm) -> [f64; 6] {
     let material = matter.case.bodies[slab.body].material;
     let yields = matter.case.materials[material].strength.yields();
@@ -222,7 +222,7 @@ fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &C
     reach
 }
 
-/// Which kept columns of a window the body has not been in at the start.
+/// Flags of kept columns of a window in which the body has not been at the start.
 fn outside(slab: &Slab, frame: &Frame, window: &Window, matter: &Matter) -> Vec<bool> {
     let footprint = Footprint::new(slab, frame, window.edge, matter);
     let columns = (0..window.kept().iter().product()).into_par_iter();

@@ -1,4 +1,4 @@
-//! Which part of space some matter fills: volume fractions in cubes (voxels).
+//! Part of space that some material fills: volume fractions in cubes (voxels).
 //!
 //! A particle is spread by a quadratic spline as wide as it is large, or as a voxel, so that an even filling
 //! gives about one everywhere inside and a half at its faces. Fractions are whole numbers of
@@ -20,7 +20,7 @@ use particles::GRAIN;
 /// A full voxel; four fractions of 16 bits stand in a word, so that 32 times as much matter fits.
 pub const UNIT: u16 = 1 << 11;
 
-/// What is at least half full belongs to matter.
+/// Least fraction of a voxel that belongs to the material.
 pub const HALF: u16 = UNIT / 2;
 
 /// Fractions in a word.
@@ -139,7 +139,7 @@ pub struct Grain {
 /// Volume fractions by voxel.
 #[derive(Debug)]
 pub struct Voxels {
-    /// Where they are.
+    /// Their window.
     pub window: Window,
     /// Words of a column.
     deep: usize,
@@ -317,7 +317,7 @@ mod tests {
         }
     }
 
-    /// What is kept before symmetry planes is what a particle and its images give there, to one unit each.
+    /// Fractions before symmetry planes are those of a particle and its images, to one unit each.
     #[test]
     fn halves_are_images_of_each_other() {
         let places = [

@@ -31,7 +31,7 @@ pub struct Crossing {
     pub forwards: bool,
     /// When (s).
     pub time: f64,
-    /// Where (m).
+    /// Position (m).
     pub position: [f64; 3],
     /// Its velocity at the end of the step (m/s).
     pub velocity: [f64; 3],
@@ -75,14 +75,14 @@ impl Crossing {
     }
 }
 
-/// What passes the witness planes of a case.
+/// Witness planes of a case, and the particles that pass them.
 #[derive(Debug, Default)]
 pub struct Witnesses {
     planes: Vec<Witness>,
     bodies: usize,
-    /// What has passed on this rank since the last time that all ranks joined.
+    /// Crossings on this rank since the last time that all ranks joined.
     passed: Vec<Crossing>,
-    /// Who has passed in a step.
+    /// Particles that have passed in a step.
     passing: Vec<u32>,
     collector: Collector,
 }

@@ -13,7 +13,7 @@ use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::ordered::{disordered, ordered};
 use particles::{GRAIN, ParticleStore};
 
-/// What some matter of a region comes to: its mass and the sums of mass times each value; extremes of
+/// Values of some material of a region: its mass and the sums of mass times each value; extremes of
 /// each value and of its opposite.
 #[derive(Clone)]
 struct Part {

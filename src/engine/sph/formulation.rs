@@ -33,7 +33,7 @@ pub(super) trait Formulation: SignalSpeed {
     /// The drift in a step `dt` (s) that velocities and `gravity` (m/s²) do not tell.
     fn drift(&self, _particles: &mut ParticleStore, _dt: f64, _gravity: &[f64; 3]) {}
 
-    /// What else than fields the second sweep is to know of halo particles, if anything.
+    /// Data of halo particles beside fields that the second sweep needs, if any.
     fn payload(&mut self) -> Option<&mut dyn Payload> {
         None
     }

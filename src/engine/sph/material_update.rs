@@ -16,8 +16,7 @@ const OWN_WORK: u32 = 60;
 /// The same for a particle that rests: sort and integration.
 const RESTING_WORK: u32 = 45;
 
-/// What the update reads and writes: each owned particle stands in exactly one lane of one
-/// cluster.
+/// Inputs and outputs of the update: each owned particle is in exactly one lane of one cluster.
 pub(super) struct MaterialUpdate<'a> {
     images: &'a [Image],
     materials: &'a [Material],
@@ -44,7 +43,7 @@ pub(super) struct Updated<'a> {
     pub lanes: u8,
     /// Their particles.
     pub particles: &'a [usize; LANES],
-    /// Where they stand among the images.
+    /// Their places among the images.
     pub indices: &'a [u32; LANES],
 }
 
@@ -60,7 +59,7 @@ impl Updated<'_> {
     }
 }
 
-/// What a formulation shows of eight particles after their update.
+/// Output of a formulation of eight particles after their update.
 pub(super) trait Show {
     /// Shows points.
     ///
@@ -267,7 +266,7 @@ impl<'a> MaterialUpdate<'a> {
         }
     }
 
-    /// What is told of a particle without pressure, of this sound speed (m/s), whose step took so much work.
+    /// Stores a particle without pressure, of this sound speed (m/s), whose step took so much work.
     ///
     /// # Safety
     /// No other thread may read or write what belongs to the particle.

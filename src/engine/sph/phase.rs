@@ -122,12 +122,12 @@ impl Sph {
         sums.terms.prepare(particles, step.dt);
     }
 
-    /// What else than fields the second sweep is to know of halo particles, if anything.
+    /// Data of halo particles beside fields that the second sweep needs, if any.
     pub fn payload(&mut self) -> Option<&mut dyn Payload> {
         with_form!(&mut self.form, form => form.payload())
     }
 
-    /// What images have shown in the last second sweep of the corrected form, in the order of the lists.
+    /// Records of images of the last second sweep of the corrected form, in the order of the lists.
     pub(super) fn corrected(&self) -> &[CorrectedRecord] {
         match &self.form {
             Form::Corrected(form) => form.records(),
@@ -160,7 +160,7 @@ impl Sph {
         with_form!(&self.form, form => form.drift(particles, dt, &loads.gravity));
     }
 
-    /// What images behind symmetry planes did in the last second sweep.
+    /// Forces of images behind symmetry planes in the last second sweep.
     #[must_use]
     pub fn forces_of_mirrors(
         &self,
@@ -175,7 +175,7 @@ impl Sph {
         self.sums.uncorrected
     }
 
-    /// What signal speeds follow from.
+    /// Inputs of signal speeds.
     #[must_use]
     pub fn signals<'a>(
         &self,

@@ -1,4 +1,4 @@
-//! What particles remember of a material update: plastic work, and the extremes so far.
+//! Records of material updates by particles: plastic work, and the extremes so far.
 
 use super::shared::Sums;
 use material::{FAILED, LANES, Lanes as Numbers, Material, PointBatch};
@@ -166,7 +166,7 @@ impl Booking<'_> {
         }
     }
 
-    /// Which lanes have values above a record.
+    /// Lanes with values above a record.
     #[inline(always)]
     fn above<V: Lanes>(&self, record: &Scatter<f64>, values: V) -> u8 {
         let mut held = [0.0; LANES];

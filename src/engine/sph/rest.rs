@@ -1,8 +1,8 @@
-//! What rests: matter in its reference state whose motion is below what numbers of double precision tell
-//! (theory page "Smoothed particle hydrodynamics").
+//! Particles at rest: material in its reference state whose motion is below what numbers of double precision
+//! show (theory page "Smoothed particle hydrodynamics").
 //!
 //! Ahead of a wave, sums over neighbours pass on ever smaller velocities, two supports farther with each step, so
-//! that after a few dozen steps nothing is at rest to the bit, though sound has got nowhere yet. So matter in its
+//! that after a few dozen steps nothing is at rest to the bit, though sound has got nowhere yet. So material in its
 //! [reference state](Rest) is not strained and has no pressure, its hourglass displacement does not begin, and a pair has no
 //! viscosity, where the strain of a step, or the velocity over that of sound, is below [`NEGLIGIBLE`].
 
@@ -11,7 +11,7 @@ use model::{Body, Case, SphForm};
 use numerics::lanes::F64x8;
 use particles::ParticleStore;
 
-/// What of a case can rest.
+/// Bodies of a case that can rest.
 #[derive(Debug, Clone)]
 pub struct Resting {
     /// Reference states without stress, by body.

@@ -1,4 +1,4 @@
-//! What the formulations share: records of stress, and what they are given.
+//! Common parts of the formulations: records of stress, and their inputs.
 
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ use sums::neighbourhood::Sources;
 use sums::scale::Scale;
 use sums::step::Side;
 
-/// What a formulation finds beside particles and lists, kept from step to step.
+/// Data of a formulation beside particles and lists, kept from step to step.
 pub(super) struct Sums {
     pub dimension: usize,
     pub scale: Scale,
@@ -29,7 +29,7 @@ pub(super) struct Sums {
     pub needs_particle: bool,
     /// Pressure (Pa) that counts as arrived, by material.
     pub arrival: Vec<f64>,
-    /// What mirror images exert, by chunk.
+    /// Forces of mirror images, by chunk.
     pub from_mirrors: Vec<FromMirrors>,
     /// Particles of this rank whose gradient has no correction.
     pub uncorrected: i64,
@@ -71,8 +71,8 @@ impl Sums {
     }
 }
 
-/// What is made of halo particles and their images, or of the images of this rank's particles,
-/// whose own records the first sweep has written: `show` makes it of a particle's index and an
+/// Makes records of halo particles and their images, or of the images of this rank's particles,
+/// whose own records the first sweep has written: `show` makes one of a particle's index and an
 /// image's mirror mask, and may read the own records.
 pub(super) fn show_images<R: Send>(
     records: &mut [R],
@@ -114,7 +114,7 @@ pub(super) fn scratch_of<R: bytemuck::Pod + Send + Sync>(
     bytemuck::cast_slice_mut(records)
 }
 
-/// What a sweep over pairs sees of all particles and images.
+/// Facts of all particles and images that a sweep over pairs reads.
 pub(super) fn sources<S>(lists: &Lists, scale: S) -> Sources<'_, S> {
     Sources {
         records: lists.motion(),

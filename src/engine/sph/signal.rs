@@ -2,7 +2,7 @@
 
 use sums::momentum::Viscosity;
 
-/// What the signal speeds of owned particles follow from.
+/// Inputs of the signal speeds of owned particles.
 #[derive(Debug, Clone, Copy)]
 pub struct Signals<'a> {
     pub(super) viscosity: Viscosity,
@@ -15,7 +15,7 @@ pub struct Signals<'a> {
     pub(super) fit_norm: &'a [f64],
 }
 
-/// How a formulation changes the speed of signals.
+/// Effect of a formulation on the speed of signals.
 pub trait SignalSpeed: Sync {
     /// Speed (m/s) for the step of particle `i`, from that by plain sums.
     fn speed(signals: &Signals, i: usize, plain: f64) -> f64;

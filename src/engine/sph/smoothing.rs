@@ -3,7 +3,7 @@
 use model::{Body, Case, Sizes, SmoothingLength};
 use particles::ParticleStore;
 
-/// How smoothing lengths follow densities (physics page, section 1).
+/// Rule of smoothing lengths by densities (physics page, section 1).
 #[derive(Debug, Clone)]
 pub struct Smoothing {
     rule: SmoothingLength,
@@ -55,8 +55,8 @@ impl Smoothing {
         }
     }
 
-    /// How far (m) particle `i` acts at most over twice: sums take its length, contact that at the
-    /// start.
+    /// Half of the largest distance (m) at which particle `i` acts: sums take its length, contact
+    /// that at the start.
     #[inline]
     #[must_use]
     pub fn reach(&self, particles: &ParticleStore, i: usize) -> f64 {

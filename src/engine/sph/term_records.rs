@@ -55,7 +55,7 @@ impl Terms {
         }
     }
 
-    /// What the sums need.
+    /// Terms for the sums.
     pub fn of_sums(&self) -> PairTerms<'_> {
         PairTerms {
             set: self.set,
@@ -70,7 +70,7 @@ impl Terms {
         self.records.capacity() * size_of::<TermRecord>()
     }
 
-    /// What this rank's particles show to others, after the first sweep of a step `dt` (s).
+    /// Prepares data of this rank's particles for others, after the first sweep of a step `dt` (s).
     pub fn prepare(&self, particles: &mut ParticleStore, dt: f64) {
         if self.set & BALSARA != 0 {
             limit_viscosity(particles);
@@ -116,7 +116,7 @@ impl Terms {
     }
 }
 
-/// What an image shows for artificial stress with the factor ε.
+/// Repulsion that an image shows for artificial stress with the factor ε.
 fn repulsion_shown(particles: &ParticleStore, image: Image, epsilon: f64) -> [f64; 6] {
     let (i, mirror_mask) = (image.slot(), image.mirror_mask());
     let stress = &particles.deviatoric_stress[i];

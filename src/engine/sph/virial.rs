@@ -14,7 +14,7 @@ use sums::corrected::CorrectedRecord;
 /// Forces of stresses after a step, while lists and halo are still those of that step.
 pub struct StressForces<'a> {
     form: SphForm,
-    /// What images show in the corrected form.
+    /// Records of images in the corrected form.
     corrected: &'a [CorrectedRecord],
     kernel: Kernel,
     particles: &'a ParticleStore,
@@ -75,8 +75,8 @@ impl<'a> StressForces<'a> {
         virial
     }
 
-    /// What a particle or image brings into the force `w_i w_j (Q_i + Q_j) ∇W_ij`: of conventional
-    /// SPH `w = m` and `Q = σ/ρ²`, of the corrected form `w = V` and `Q = A σ B`, with what holds
+    /// Share of a particle or image in the force `w_i w_j (Q_i + Q_j) ∇W_ij`: of conventional
+    /// SPH `w = m` and `Q = σ/ρ²`, of the corrected form `w = V` and `Q = A σ B`, with the terms of
     /// hourglass displacements.
     fn carried(&self, place: u32) -> Carried {
         let image = self.lists.images()[place as usize];
@@ -102,7 +102,7 @@ impl<'a> StressForces<'a> {
     }
 }
 
-/// What a particle brings into the force of a pair.
+/// Share of a particle in the force of a pair.
 struct Carried {
     weight: f64,
     stress: [f64; 9],

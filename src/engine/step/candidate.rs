@@ -254,7 +254,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         }
     }
 
-    /// How a particle has failed numerically, if it has.
+    /// Numerical failure of a particle, if any.
     pub(super) fn failure(&self, i: usize, moved: &Moved) -> Option<NumericalFailure> {
         let [dt, kind, _] = self.candidate(i, moved);
         (dt == ERROR).then(|| kind_of(kind))

@@ -1,4 +1,4 @@
-//! Which fields a case has use for.
+//! Fields that a case uses.
 
 use crate::contact::{Connectivity, ContactTable};
 use crate::fragments::{BYTES_OF_SEARCH, Labels};

@@ -1,5 +1,5 @@
-//! How far bodies may fly in a step without passing through each other unseen, see the page on time
-//! integration.
+//! Distance that bodies may fly in a step without passing through each other unseen, see the page
+//! on time integration.
 //!
 //! In nearly all steps the extents of all places and velocities, which are joined with the sums of each
 //! step, show that nothing can. Else pairs of bodies are examined, then those of their particles that can

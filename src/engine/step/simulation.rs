@@ -609,7 +609,7 @@ impl Simulation {
         levels.map(|level| Axis::ALL[slabs.axis(level)]).collect()
     }
 
-    /// How often levels or axes of the slabs have changed since the start of this process.
+    /// Number of changes of levels or axes of the slabs since the start of this process.
     #[must_use]
     pub fn changes_of_slabs(&self) -> u64 {
         self.space.partition.changes()

@@ -32,11 +32,11 @@ pub struct Fraction {
     pub slope: f64,
     /// `Σ V_j W_ij` with current volumes, those of voids left out.
     pub current: f64,
-    /// How much matter of its own body it lacks: `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over those of its body.
+    /// Material of its own body that it lacks: `λ_i = ⟨1 − 2 Σ V_j W_ij/C̄_i⟩₊` over those of its body.
     pub isolation: f64,
 }
 
-/// What overlap contact measures of one particle.
+/// Measurement of one particle by overlap contact.
 pub(crate) struct Measured {
     pub particle: usize,
     /// Its place in the sequence.

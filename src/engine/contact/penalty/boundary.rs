@@ -7,7 +7,7 @@ use numerics::vector::{minus, norm};
 /// Weight of a corner's normal beside that of a face.
 pub(super) const CORNER: f64 = 1e-3;
 
-/// What tells particles of a body apart.
+/// Limits that distinguish particles of a body.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Boundary {
     /// Length of the boundary vector `|b| Δp` above which a particle is of the outermost layer.
@@ -62,8 +62,8 @@ impl Boundary {
         }
     }
 
-    /// How much the normal of a particle counts whose body fills `filled` of its support: 1 on
-    /// faces, next to nothing at corners.
+    /// Weight of the normal of a particle whose body fills `filled` of its support: 1 on faces,
+    /// next to nothing at corners.
     fn weight(&self, filled: f64) -> f64 {
         ((filled - self.edge) / (self.face - self.edge)).clamp(CORNER, 1.0)
     }

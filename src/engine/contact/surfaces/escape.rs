@@ -14,7 +14,7 @@ use numerics::vector::dot;
 const MOST: usize = 4;
 /// Searches for such places.
 const TRIES: usize = 8;
-/// What the reach is kept to.
+/// Tolerance of the reach.
 const CLOSE: f64 = 1e-9;
 
 /// The way of a particle back to where it keeps its reach.

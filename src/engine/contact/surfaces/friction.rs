@@ -9,7 +9,7 @@ use crate::contact::mode::fill;
 use numerics::vector::norm;
 use particles::{ParticleStore, Scatter};
 
-/// What friction and damping do to one particle, beside their part of its [`Push`]es.
+/// Friction and damping of one particle, beside their part of its [`Push`]es.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SurfaceFriction {
     particle: usize,
@@ -28,7 +28,7 @@ fn slip(particles: &ParticleStore, i: usize) -> Slip {
     }
 }
 
-/// What friction of a particle rests on: sums over the surfaces that it touches.
+/// Load of friction of a particle: sums over the surfaces that it touches.
 #[derive(Default)]
 struct Rest {
     load: f64,

@@ -28,7 +28,7 @@ use sums::step::{Side, Step};
 #[derive(Debug, Default)]
 pub struct Corrected {
     records: Vec<CorrectedRecord>,
-    /// Where the records of this rank's particles stand.
+    /// Places of the records of this rank's particles.
     places: Vec<u32>,
     /// Those of halo particles.
     received: Vec<CorrectedRecord>,
@@ -48,7 +48,7 @@ impl Corrected {
 }
 
 impl Corrected {
-    /// What images have shown in the last second sweep, in the order of the lists.
+    /// Records of images of the last second sweep, in the order of the lists.
     #[must_use]
     pub fn records(&self) -> &[CorrectedRecord] {
         &self.records
@@ -210,7 +210,7 @@ impl Gradient for CorrectedGradients<'_> {
     }
 }
 
-/// What the image `mirror_mask` of a particle shows that shows this.
+/// Record of the image `mirror_mask` of a particle with this record.
 fn reflected(record: &CorrectedRecord, mirror_mask: u8) -> CorrectedRecord {
     CorrectedRecord {
         stress: Mirrors::reflect_tensor(&record.stress, mirror_mask),

@@ -14,9 +14,9 @@ use sums::neighbourhood::{Neighbourhood, Sources};
 use sums::step::Step;
 use sums::with_scale;
 
-/// How a formulation makes velocity gradients.
+/// Velocity gradients of a formulation.
 pub(super) trait Gradient: Sync {
-    /// What shows the stresses of a cluster.
+    /// Type that shows the stresses of a cluster.
     type Show<'a, S: PairScale>: Show
     where
         Self: 'a;

@@ -18,7 +18,7 @@ use sums::neighbourhood::Neighbourhood;
 use sums::normalised::{NormalisedGradient, NormalisedRecord};
 use sums::step::{Side, Step};
 
-/// How much corrections enlarge gradients at surfaces of lattices, which steps need not heed.
+/// Factor of corrected gradients at surfaces of lattices, which steps need not heed.
 const SURFACE_CORRECTION: f64 = 2.0;
 
 /// The normalised formulation.
@@ -128,7 +128,7 @@ impl Gradient for NormalisedGradients<'_> {
     }
 }
 
-/// What an image shows of its stress and correction.
+/// Record of the stress and correction of an image.
 fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
     let (i, mirror_mask) = (image.slot(), image.mirror_mask());
     let own = NormalisedRecord::new(

@@ -21,7 +21,7 @@ use sums::stress_points::{self, StressPointRecord};
 /// The formulation by stress points.
 #[derive(Debug, Default)]
 pub struct StressPoints {
-    /// What stress points show to velocity particles, kept from step to step.
+    /// Records of stress points that velocity particles read, kept from step to step.
     records: Vec<StressPointRecord>,
 }
 

@@ -18,8 +18,8 @@ use sums::normalised::stress_power;
 use sums::step::Step;
 use sums::with_scale;
 
-/// Where the first sweep writes what it finds at stress points: velocities, and the geometry of
-/// fits in index of the moments that follow from it.
+/// Target of the first sweep at stress points: velocities, and the geometry of fits in place of
+/// the moments that follow from it.
 struct FitTarget<'a> {
     moment: Scatter<'a, [f64; 9]>,
     offset: Scatter<'a, [f64; 3]>,
@@ -35,8 +35,8 @@ struct FitTarget<'a> {
 }
 
 impl FitTarget<'_> {
-    /// What of lane `k` belongs to particle `i`, whose velocity gradient was `last` (1/s); gives
-    /// those of this step's mid-step velocities.
+    /// Stores lane `k` for particle `i`, whose velocity gradient was `last` (1/s); gives the
+    /// gradients of this step's mid-step velocities.
     #[inline(always)]
     fn store(&self, i: usize, k: usize, fitted: &Fitted, last: &[f64; 9]) -> MidStep {
         let mut predicted = [0.0; 9];
@@ -68,8 +68,8 @@ impl FitTarget<'_> {
         mid_step(&predicted, last, self.step.dt, self.step.last_dt)
     }
 
-    /// What stress point `i` has heated less (J/kg) in the kicks about the beginning of this step,
-    /// by `rate` (W/kg) at the predicted velocity, than at the mean of the mid-step velocities
+    /// Heat (J/kg) that stress point `i` lacks by the kicks about the beginning of this step, with
+    /// `rate` (W/kg) at the predicted velocity, against that at the mean of the mid-step velocities
     /// before and after, whose gradients there were `last` and `next` (1/s).
     #[inline(always)]
     fn late_heat(&self, i: usize, fit: &Fit, rate: f64, last: &[f64; 9], next: &[f64; 9]) -> f64 {

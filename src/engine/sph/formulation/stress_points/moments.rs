@@ -43,7 +43,7 @@ pub(super) fn find_moments(viscosity: Viscosity, particles: &mut ParticleStore) 
         });
 }
 
-/// What the stress of a stress point depends on.
+/// Inputs of the stress of a stress point.
 struct PointView<'a> {
     stress_mass: &'a [f64],
     predicted_density: &'a [f64],
