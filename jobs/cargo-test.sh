@@ -29,6 +29,10 @@ share() {
     grep -vE "$too_long" | sort | awk -v tenth="$1" 'NR % 10 == tenth % 10' || true
 }
 
+# Ranks of tests share one machine: no other way between them is looked for (.2 s a launch), and what
+# is left of a launch that fails goes at once (1 s).
+export OMPI_MCA_pml=${OMPI_MCA_pml:-ob1} OMPI_MCA_odls_base_sigkill_timeout=0
+
 mkdir -p target
 code=0
 if cargo nextest --version >/dev/null 2>&1; then

@@ -100,15 +100,20 @@ fn a_killed_rank_ends_all() {
 #[test]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
+    kills_cost_little(&["kill:1:60", "kill-in-checkpoint:0:40"]);
+}
+
+#[test]
+#[ignore = "slow: the other rank of each"]
+fn another_rank_killed_costs_what_came_after_the_last_checkpoint() {
+    kills_cost_little(&["kill:0:61", "kill-in-checkpoint:1:40"]);
+}
+
+fn kills_cost_little(faults: &[&str]) {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
     end(&mut coarse_run(2, &reference)).with_code(0);
-    for fault in [
-        "kill:1:60",
-        "kill:0:61",
-        "kill-in-checkpoint:1:40",
-        "kill-in-checkpoint:0:40",
-    ] {
+    for fault in faults {
         let run = place.path().join(fault);
         let mut command = faulty_run(3, &run, fault);
         command.args(["--set", "output.checkpoint_every_steps=16"]);

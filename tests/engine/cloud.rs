@@ -144,7 +144,7 @@ impl Cloud {
 
     pub fn place(&self, image: Image) -> [f64; 3] {
         self.mirrors
-            .reflect_position(&self.position[image.slot()], image.code())
+            .reflect_position(&self.position[image.slot()], image.mirror_mask())
     }
 
     pub fn find(&self) -> Found {
@@ -176,7 +176,10 @@ impl Cloud {
             .iter()
             .map(|&image| MotionRecord {
                 position: self.place(image),
-                velocity: Mirrors::reflect_vector(&self.velocity[image.slot()], image.code()),
+                velocity: Mirrors::reflect_vector(
+                    &self.velocity[image.slot()],
+                    image.mirror_mask(),
+                ),
                 volume: 1.0,
                 mass: 1.0,
             })
@@ -229,7 +232,7 @@ impl Found {
     pub fn names(&self, cloud: &Cloud) -> Vec<(u64, u8)> {
         let images = self.sequence.images().iter();
         images
-            .map(|image| (cloud.id[image.slot()], image.code()))
+            .map(|image| (cloud.id[image.slot()], image.mirror_mask()))
             .collect()
     }
 }

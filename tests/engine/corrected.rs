@@ -95,7 +95,10 @@ fn check_sweeps<S: PairScale>(cloud: Cloud, scale: S) {
         .collect();
     let stress: Vec<Matrix> = (world.found.sequence.images().iter())
         .map(|image| {
-            Matrix::from_row_slice(&Mirrors::reflect_tensor(&own[image.slot()], image.code()))
+            Matrix::from_row_slice(&Mirrors::reflect_tensor(
+                &own[image.slot()],
+                image.mirror_mask(),
+            ))
         })
         .collect();
     world.forces(scale, &stress, &world.straight(), 0.0, |k, i, forces| {

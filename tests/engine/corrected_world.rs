@@ -42,7 +42,7 @@ impl World {
             let (stress, mass, rho) = own[image.slot()];
             (motion.mass, motion.volume) = (mass, mass / rho);
             let [xx, yy, zz, xy, mut xz, mut yz] =
-                Mirrors::reflect_symmetric(&stress, image.code());
+                Mirrors::reflect_symmetric(&stress, image.mirror_mask());
             if cloud.dimension < 3 {
                 (xz, yz) = (0.0, 0.0);
             }

@@ -50,7 +50,7 @@ fn key(cloud: &Cloud, image: Image) -> Key {
         grid.cells(&x),
         along,
         cloud.id[image.slot()],
-        image.code(),
+        image.mirror_mask(),
     )
 }
 
@@ -69,7 +69,7 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
         assert!(padding.iter().all(|place| place == valid.last().unwrap()));
         for &place in valid {
             let image = images[place as usize];
-            assert_eq!(image.code(), 0);
+            assert_eq!(image.mirror_mask(), 0);
             assert_eq!(cloud.group(image.slot()), cluster.group);
             seen[image.slot()] += 1;
         }
@@ -85,7 +85,10 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
             "once each, in order"
         );
         let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
-        assert_eq!(among.mirrors, images().any(|image| image.code() != 0));
+        assert_eq!(
+            among.mirrors,
+            images().any(|image| image.mirror_mask() != 0)
+        );
         let moves = |image: Image| cloud.velocity[image.slot()] != cloud.velocity[0];
         assert_eq!(among.moving, images().any(moves));
         assert_eq!(
@@ -159,7 +162,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
         let mut expected = BTreeMap::new();
         for receiver in places.clone() {
             let image = images[receiver as usize];
-            if image.code() != 0 || image.slot() >= cloud.owned {
+            if image.mirror_mask() != 0 || image.slot() >= cloud.owned {
                 continue;
             }
             let row = body(receiver) * table.size_classes.count();

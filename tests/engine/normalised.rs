@@ -52,7 +52,7 @@ impl World {
         for (image, motion) in found.sequence.images().iter().zip(&mut found.motion) {
             let (tensor, [mass, density, sound_speed]) = own[image.slot()];
             (motion.mass, motion.volume) = (mass, mass / density);
-            let tensor = Mirrors::reflect_symmetric(&tensor, image.code());
+            let tensor = Mirrors::reflect_symmetric(&tensor, image.mirror_mask());
             stress.push((tensor, density, sound_speed));
         }
         Self {
@@ -156,8 +156,8 @@ impl World {
         let reflected = |image: &particles::Image| {
             let c = &own[image.slot()];
             Correction {
-                matrix: Mirrors::reflect_tensor(&c.matrix, image.code()),
-                shift: Mirrors::reflect_vector(&c.shift, image.code()),
+                matrix: Mirrors::reflect_tensor(&c.matrix, image.mirror_mask()),
+                shift: Mirrors::reflect_vector(&c.shift, image.mirror_mask()),
                 norm: c.norm,
             }
         };

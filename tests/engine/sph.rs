@@ -83,7 +83,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
             * kernel.slope(distance, h).abs();
         for a in 0..3 {
             sum.acceleration[a] += force[a];
-            if images[j].code() != 0 {
+            if images[j].mirror_mask() != 0 {
                 sum.from_mirrors[a] += force[a];
             }
         }
@@ -117,7 +117,10 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
             let stress = StressRecord {
                 density,
                 sound_speed,
-                stress_over_density2: particles::Mirrors::reflect_symmetric(&stress, image.code()),
+                stress_over_density2: particles::Mirrors::reflect_symmetric(
+                    &stress,
+                    image.mirror_mask(),
+                ),
             };
             (motion, stress)
         })
@@ -132,7 +135,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
 
 /// The images behind planes among neighbours.
 fn mirrored(found: &Found, neighbours: &[u32]) -> Vec<u32> {
-    let is_image = |&&j: &&u32| found.sequence.images()[j as usize].code() != 0;
+    let is_image = |&&j: &&u32| found.sequence.images()[j as usize].mirror_mask() != 0;
     neighbours.iter().filter(is_image).copied().collect()
 }
 

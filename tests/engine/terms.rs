@@ -58,10 +58,10 @@ impl Records {
             records.stress.push(StressRecord {
                 density,
                 sound_speed,
-                stress_over_density2: Mirrors::reflect_symmetric(&stress, image.code()),
+                stress_over_density2: Mirrors::reflect_symmetric(&stress, image.mirror_mask()),
             });
             records.options.push(TermRecord {
-                repulsion: Mirrors::reflect_symmetric(&repulsion, image.code()),
+                repulsion: Mirrors::reflect_symmetric(&repulsion, image.mirror_mask()),
                 half_limiter: 0.25 * limiter,
                 specific_energy: energy,
             });

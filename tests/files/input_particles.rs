@@ -10,7 +10,7 @@ use std::path::Path;
 
 use files::input::parse;
 use model::{Body, Case, Quantity, Sizes};
-use particles::neighbours::Kinds;
+use particles::neighbours::SizeClasses;
 use populate::{self, Brick, Share, Wanted};
 
 /// A case with one body of some particles.
@@ -477,10 +477,10 @@ fn unequal_volumes_are_unequal_sizes() {
         let length = sizes.of(0, density * cell) * case.bodies[0].smoothing_length;
         assert!(close(length, 1.3 * edge), "{length}");
     }
-    let kinds = Kinds::new(&case);
+    let kinds = SizeClasses::new(&case);
     assert!(kinds.count() > 10);
     assert_eq!(kinds.of(0, density * 1e-9), 0);
     assert!(kinds.of(0, density * 8e-9) >= kinds.count() - 2);
     assert_eq!(rows(1.0).bodies[0].lattice.sizes, None);
-    assert_eq!(Kinds::new(&rows(1.0)).count(), 1);
+    assert_eq!(SizeClasses::new(&rows(1.0)).count(), 1);
 }

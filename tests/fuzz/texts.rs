@@ -222,7 +222,7 @@ fn change(text: &str, other: &str, random: &mut Random) -> String {
 
 #[test]
 fn no_text_makes_the_reader_panic() {
-    read(&Budget::new(1000));
+    read(&Budget::new(300));
 }
 
 #[test]

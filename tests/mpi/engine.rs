@@ -242,7 +242,7 @@ fn check_halo(
         let slot = image.slot();
         assert!(slot < particles.owned() + particles.halo());
         let k = numbers[&particles.id[slot]];
-        assert!(held.insert((k, image.code())), "an image twice");
+        assert!(held.insert((k, image.mirror_mask())), "an image twice");
         if slot >= particles.owned() {
             copies.insert(slot);
         }

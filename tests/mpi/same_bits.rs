@@ -107,17 +107,7 @@ fn any_ranks_and_threads() {
     let (_keep, at) = folder();
     let reference = at("1x1");
     run(1, 1, QUARTER, &[], &reference);
-    let combinations = [
-        (7, 1),
-        (7, 2),
-        (1, 2),
-        (2, 1),
-        (2, 2),
-        (3, 1),
-        (3, 2),
-        (4, 1),
-        (4, 2),
-    ];
+    let combinations = [(7, 1), (1, 2), (2, 1), (3, 2), (4, 1)];
     each(&combinations, |&(ranks, threads)| {
         let what = format!("{ranks} ranks × {threads} threads");
         let other = at(&what);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::ContactTable;
-use super::accumulators::Books;
+use super::accumulators::Accumulators;
 use super::connectivity::Connectivity;
 use super::mode::{Measurements, Scene, fill};
 use super::sums::ContactSums;

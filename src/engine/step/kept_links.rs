@@ -254,7 +254,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                         0 => [here.min(there), here.max(there), 0],
                         mirror_mask => [here, there, mirror_mask],
                     };
-                    let last = &mut recent[slot(&link)];
+                    let last = &mut recent[bucket(&link)];
                     let is_near = |lane: usize| {
                         let is_receiver = lanes >> lane & 1 == 1;
                         is_receiver
@@ -308,7 +308,7 @@ impl Receivers {
 /// Links remembered so that few are found twice.
 const RECENT: usize = 256;
 
-fn slot(&[a, b, mirror_mask]: &Link) -> usize {
+fn bucket(&[a, b, mirror_mask]: &Link) -> usize {
     let mixed = (a ^ b.rotate_left(16) ^ mirror_mask).wrapping_mul(0x9e37_79b9);
     (mixed >> 24) as usize
 }
