@@ -234,6 +234,39 @@ fn graded_bodies_have_their_mass() {
     }
 }
 
+/// In every case that is shipped, graded or not, each particle begins inside its body, and on this side
+/// of the symmetry planes.
+#[test]
+fn no_particle_begins_outside_its_body() {
+    crate::project::enter();
+    let mut graded = 0;
+    for entry in std::fs::read_dir("inputs").unwrap() {
+        let path = entry.unwrap().path().join("case.toml");
+        if !path.exists() {
+            continue;
+        }
+        let case = files::input::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+        for body in &case.bodies {
+            let solid = body.shape.solid(case.dimension);
+            graded += usize::from(body.lattice.grading.is_some());
+            for site in populate::sites(body, case.dimension, &case.symmetry, None) {
+                let x = Vec3::from(site.position);
+                let out = solid.distance(&x) / body.lattice.spacing;
+                assert!(
+                    out < 1e-6,
+                    "{} {}: {x:?} by {out} spacings",
+                    path.display(),
+                    body.name
+                );
+                for plane in &case.symmetry {
+                    assert!(x[plane.axis.index()] >= plane.position);
+                }
+            }
+        }
+    }
+    assert!(graded > 3, "{graded}");
+}
+
 /// Where the whole body is as fine, nothing is graded.
 #[test]
 fn a_grading_beyond_the_body_is_none() {

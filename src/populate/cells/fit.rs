@@ -137,6 +137,7 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
         force
     };
     let hold = |position: &mut [f64; 3], v: &mut [f64; 3], size: f64| {
+        scale.take_in(cells, position, LAYER * size);
         let here = *position;
         scale.faces(cells, &here, OF_LAYER * size, |depth, normal| {
             let way = depth - LAYER * size;
@@ -205,6 +206,18 @@ impl Scale {
 
     fn up(&self, x: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| self.origin[a] + x[a] * self.spacing)
+    }
+
+    /// Takes a place outside the solid to a depth below its surface: faces are those of places inside.
+    fn take_in(&self, cells: &Cells, position: &mut [f64; 3], depth: f64) {
+        let x = self.up(position).into();
+        let beyond = cells.solid.distance(&x) / self.spacing;
+        if beyond > 0.0 {
+            let normal = cells.solid.outward(&x);
+            for a in 0..3 {
+                position[a] -= (beyond + depth) * normal[a];
+            }
+        }
     }
 
     /// Tells the faces less than `reach` above a place, symmetry planes among them: depth, and the
