@@ -182,7 +182,8 @@ fn a_plate_has_its_hole_and_lips() {
         assert_eq!(told(&found, "verdict"), Told::Word("perforated"));
         is(&found, "hole_diameter", 16.0 * D);
         is(&found, "mid_plane_hole_diameter", 16.0 * D);
-        is(&found, "clear_diameter", 16.0 * D);
+        is(&found, "dish_depth", 0.0);
+        assert!(number(&found, "deciding_spacing").is_nan());
         assert_eq!(number(&found, "rear_speed"), 0.0);
         is(&found, "front_lip_inner_diameter", 16.0 * D);
         is(&found, "front_lip_outer_diameter", 20.0 * D);
@@ -222,6 +223,7 @@ fn plates_are_judged() {
     let mut dented = plate(dent);
     assert_eq!(verdict(&mut dented), Told::Word("held"));
     is(&measure(&mut dented), "rear_height", 3.0 * D);
+    is(&measure(&mut dented), "dish_depth", 3.0 * D);
     // The rear layers have parted from the others, and hold at the rim.
     let mut parted = plate(|[x, y, z]| {
         let deep = if z < -2.0 { 5.0 } else { 0.0 } * (1.0 - (x * x + y * y) / 144.0).max(0.0);
@@ -249,7 +251,49 @@ fn plates_are_judged() {
     let found = measure(&mut bulged);
     assert_eq!(told(&found, "verdict"), Told::Word("held"));
     assert_eq!(number(&found, "hole_diameter"), 0.0);
+    is(&found, "dish_depth", 10.0 * D);
     assert!((number(&found, "rear_speed") - 10.0).abs() < 0.1);
+    // Nor is a hole in the bottom of the dish as wide as what one sees between the faces of the start.
+    for (radius, word) in [(5.0, "perforated"), (0.6, "pinhole")] {
+        let mut pierced = plate(|[x, y, z]| {
+            let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
+            let r = (x - 0.5).hypot(y - 0.5);
+            let out = if r < radius {
+                1.0 + 12.0 / r.max(0.5)
+            } else {
+                1.0
+            };
+            Some((
+                [
+                    out * x,
+                    out * y,
+                    if r < radius { 10.0 + z } else { z - deep },
+                ],
+                STILL,
+            ))
+        });
+        let found = measure(&mut pierced);
+        let hole = number(&found, "hole_diameter");
+        assert_eq!(told(&found, "verdict"), Told::Word(word), "{hole}");
+        assert!(
+            (hole - 2.0 * radius * D).abs() < 1.5 * D,
+            "{radius}: {hole}"
+        );
+        let deciding = number(&found, "deciding_spacing");
+        assert!(deciding == hole / 4.0 || word == "perforated" && deciding.is_nan());
+        is(
+            &found,
+            "dish_depth",
+            10.0 * D * (1.0 - radius * radius / 225.0),
+        );
+    }
+    // A few particles behind it are no spall.
+    let mut stray = plate(|[x, y, z]| {
+        (x.hypot(y) < 1.0 && z < -3.0).then_some(([x, y, z - 20.0], [0.0, 0.0, -500.0]))
+    });
+    let found = measure(&mut stray);
+    assert_eq!(told(&found, "verdict"), Told::Word("held"));
+    assert_eq!(number(&found, "rear_mass"), 0.0);
     // What lies loose in the bulge has not left to the rear, however deep the bulge is.
     let mut loose = plate(|[x, y, z]| {
         let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);

@@ -11,8 +11,11 @@ use comm::Comm;
 use model::Slab;
 use numerics::vector::dot;
 
-/// A hole, a gap or a flying piece counts if it is this many voxels wide.
+/// A gap or a flying piece counts if it is this many voxels wide, a hole if it is wider.
 const LEAST: f64 = 2.0;
+
+/// A pinhole is decided where it is this many voxels wide.
+const DECIDED: f64 = 4.0;
 
 /// Sectors about the hole in which lips are looked for.
 const SECTORS: usize = 48;
@@ -26,10 +29,12 @@ const FARTHEST: f64 = 3.0;
 /// Fate of a plate, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// There is a hole through it, or what struck it is behind it.
+    /// One sees through it, or what struck it is behind it.
     Perforated,
     /// Matter of the plate has left its rear side.
     DetachedSpall,
+    /// A way leads through it that is no wider than voxels can tell.
+    Pinhole,
     /// There is a gap inside, and what lies behind it has not left.
     AttachedSpall,
     /// None of these.
@@ -43,6 +48,7 @@ impl Verdict {
         match self {
             Self::Perforated => "perforated",
             Self::DetachedSpall => "detached spall",
+            Self::Pinhole => "pinhole",
             Self::AttachedSpall => "attached spall",
             Self::Held => "held",
         }
@@ -184,12 +190,16 @@ fn sector(x: f64, y: f64) -> usize {
 
 /// Shape of a plate by its window.
 struct Shape {
+    /// True if a way leads through it.
+    open: bool,
+    /// Of what one sees through; zero unless it is open.
     hole: f64,
-    clear: f64,
     middle: f64,
     lips: [Lip; 2],
     /// Greatest heights (m) beyond the front and the rear face.
     heights: [f64; 2],
+    /// Greatest way (m) of both faces of a column to the rear.
+    dish: f64,
     parted: bool,
     edge: f64,
 }
@@ -199,8 +209,7 @@ impl Shape {
         let edge = attached.window.edge;
         let is_open = attached.is_open();
         let inside = |mask: Mask| mask.largest_inside();
-        let hole = inside(attached.open_between(slab.rear, slab.front));
-        let clear = inside(attached.open());
+        let hole = inside(attached.open());
         let middle = 0.5 * (slab.front + slab.rear);
         let at_middle = inside(attached.open_between(middle, middle));
         let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
@@ -208,16 +217,15 @@ impl Shape {
             attached.filled_between(above, f64::MAX),
             attached.filled_between(f64::MIN, below),
         ];
-        let is_hole = is_open && diameter(hole.count(), edge) >= LEAST * edge;
         let width = |mask: &Mask| {
-            if is_hole {
+            if is_open {
                 diameter(mask.count(), edge)
             } else {
                 0.0
             }
         };
         let lips = raised.map(|raised| {
-            if is_hole {
+            if width(&hole) > LEAST * edge {
                 Lip::about(&hole, &raised, attached)
             } else {
                 Lip::NONE
@@ -232,13 +240,17 @@ impl Shape {
                     most[1].max(slab.rear - ends[0]),
                 ]
             });
+        let dish = attached.ends().flatten().fold(0.0_f64, |most, ends| {
+            most.max((slab.front - ends[1]).min(slab.rear - ends[0]))
+        });
         let wide = |mask: &Mask| diameter(mask.largest_part().count(), edge) >= LEAST * edge;
         Self {
+            open: is_open,
             hole: width(&hole),
-            clear: width(&clear),
             middle: width(&at_middle),
             lips,
             heights,
+            dish,
             parted: wide(&attached.parted()),
             edge,
         }
@@ -247,11 +259,12 @@ impl Shape {
     /// Of a plate in which nothing has flowed.
     fn untouched(slab: &Slab) -> Self {
         Self {
+            open: false,
             hole: 0.0,
-            clear: 0.0,
             middle: 0.0,
             lips: [Lip::NONE, Lip::NONE],
             heights: [0.0; 2],
+            dish: 0.0,
             parted: false,
             edge: slab.spacing,
         }
@@ -267,10 +280,12 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
     let left = Left::find(slab, remains, matter, comm);
     let density = matter.case.density_of(slab.body);
     let least = density * (LEAST * shape.edge).powi(3);
-    let verdict = if shape.hole > 0.0 || left.passed > 0.0 {
+    let verdict = if shape.hole > LEAST * shape.edge || left.passed >= least {
         Verdict::Perforated
     } else if left.rear >= least {
         Verdict::DetachedSpall
+    } else if shape.open {
+        Verdict::Pinhole
     } else if shape.parted {
         Verdict::AttachedSpall
     } else {
@@ -279,20 +294,32 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
     let length = |name, value: f64| Figure::number(name, value, "m").within(shape.edge);
     let mass = |name, value: f64| Figure::number(name, value, "kg");
     let [front, rear] = &shape.lips;
+    // Of a way that is nowhere straight half of this run's.
+    let deciding = match verdict {
+        Verdict::Pinhole if shape.hole > 0.0 => shape.hole / DECIDED,
+        Verdict::Pinhole => 0.5 * shape.edge,
+        _ => f64::NAN,
+    };
+    let (behind, stray) = if left.rear < least {
+        (0.0, left.rear)
+    } else {
+        (left.rear, 0.0)
+    };
     Findings {
         figures: vec![
             Figure::word("verdict", verdict.word()),
             length("hole_diameter", shape.hole),
             length("mid_plane_hole_diameter", shape.middle),
-            length("clear_diameter", shape.clear),
+            Figure::number("deciding_spacing", deciding, "m"),
             length("front_lip_inner_diameter", front.inner),
             length("front_lip_outer_diameter", front.outer),
             length("rear_lip_inner_diameter", rear.inner),
             length("rear_lip_outer_diameter", rear.outer),
             length("front_height", shape.heights[0]),
             length("rear_height", shape.heights[1]),
+            length("dish_depth", shape.dish),
             mass("front_mass", left.front),
-            mass("rear_mass", left.rear),
+            mass("rear_mass", behind).within(stray),
             mass("removed_mass", left.front + left.rear).within(left.doubtful),
             mass("passed_mass", left.passed),
             Figure::number("rear_speed", left.speed, "m/s"),
