@@ -20,6 +20,7 @@ mod motion;
 
 pub use forces::CorrectedRecord;
 
+use super::limiter::limiter;
 use super::neighbourhood::Neighbourhood;
 use motion::{PlainSums, motion};
 use numerics::dispatch::Vectorised;
@@ -91,6 +92,8 @@ pub struct Corrected {
     pub gradient: [F64x8; 9],
     /// Mean velocity of the neighbours against the particle that no linear field explains (m/s).
     pub rest: [F64x8; 3],
+    /// The limiter of the linear viscosity.
+    pub limiter: F64x8,
     /// The corrections.
     pub correction: Correction,
 }
@@ -118,6 +121,7 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
         Corrected {
             gradient: store_all(&motion.gradient),
             rest: store_all(&motion.rest),
+            limiter: limiter(&motion.gradient, &motion.rest, plain.square_length()).store(),
             correction,
         }
     }
@@ -130,12 +134,14 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
         let (position, velocity) = self.around.motion::<V>();
         let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
         let (mut mean_velocity, mut place) = ([zero; 3], [zero; 3]);
+        let mut square = zero;
         for pair in self.around.pairs(&position) {
             let (here, r) = (pair.source, pair.separation.r);
             let volume = V::splat(here.volume);
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             let steep = add_moment(&mut moment, &r, factor);
             let weight = factor.mul(pair.separation.square);
+            square = pair.separation.square.mul_add(weight, square);
             for a in 0..3 {
                 let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
                 mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
@@ -152,6 +158,7 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
             moment,
             velocity: mean_velocity,
             place,
+            square,
             weight: zero.sub(xx.add(yy).add(zz)),
         }
     }

@@ -10,6 +10,7 @@ pub mod force_sweep;
 pub mod from_mirrors;
 pub mod gradient;
 pub mod hourglass;
+pub mod limiter;
 pub mod linear_fit;
 pub mod mid_step;
 pub mod momentum;

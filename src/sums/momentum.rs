@@ -64,8 +64,8 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// Density (kg/m³).
     fn density(&self) -> f64;
 
-    /// Sound speed (m/s).
-    fn sound_speed(&self) -> f64;
+    /// Speed (m/s) of the linear viscosity: that of sound, by the limiter of the form.
+    fn viscous_speed(&self) -> f64;
 
     /// The torque (N m) that pairs of eight receivers exert on each other without these neighbours, where
     /// none is left with them; none where angular momentum is not kept anyway.
@@ -266,7 +266,7 @@ pub(crate) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
     let stresses = records(sums.stresses, &around.receivers);
     let mut own = O::begin(around, &stresses);
     let rho_i = gather::<V, _>(&stresses, PairStress::density);
-    let c_i = gather::<V, _>(&stresses, PairStress::sound_speed);
+    let c_i = gather::<V, _>(&stresses, PairStress::viscous_speed);
     let zero = V::splat(0.0);
     let viscous = Viscous::begin(sums.viscosity, rho_i, c_i);
     let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
@@ -285,7 +285,7 @@ pub(crate) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
         let r = now.r;
         let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
         let v = [along(0), along(1), along(2)];
-        let state_of = (state.density(), state.sound_speed());
+        let state_of = (state.density(), state.viscous_speed());
         let viscous = viscous.pair(&terms, (now, pair.h, pair.beside), &v, state_of, shown);
         fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
         let mut stress = own.plain(state, viscous.pi);
@@ -371,7 +371,7 @@ impl PairStress for StressRecord {
     }
 
     #[inline(always)]
-    fn sound_speed(&self) -> f64 {
+    fn viscous_speed(&self) -> f64 {
         self.sound_speed
     }
 

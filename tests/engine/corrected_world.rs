@@ -165,7 +165,7 @@ impl World {
                 stress: p.transpose().as_slice().try_into().unwrap(),
                 hourglass: hourglass.into(),
                 density,
-                sound_speed: 1.0,
+                viscous_speed: 1.0,
             })
             .collect();
         let chunks = self.found.clusters.chunks();

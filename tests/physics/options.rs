@@ -82,8 +82,9 @@ fn artificial_stress_keeps_particles_apart_in_tension() {
 }
 
 /// The heating rate in the middle of a fluid that moves with the velocity gradient `l`.
-fn heating(l: [f64; 4], balsara: bool) -> f64 {
+fn heating(form: SphForm, l: [f64; 4], balsara: bool) -> f64 {
     let mut case = rectangle(16.0, 16.0);
+    case.sph.form = form;
     case.materials[0].strength = Strength::None;
     case.materials[0].failure.spall = None;
     case.sph.balsara = balsara;
@@ -106,18 +107,31 @@ fn heating(l: [f64; 4], balsara: bool) -> f64 {
         .fold(0.0, f64::max)
 }
 
+const RATE: f64 = 1e6;
+const SHEAR: [f64; 4] = [0.0, RATE, 0.0, 0.0];
+const COMPRESSION: [f64; 4] = [-RATE, 0.0, 0.0, -RATE];
+
 /// Without the switch shear heats as compression does; with it only compression does.
 #[test]
 fn the_balsara_switch_spares_shear() {
-    const RATE: f64 = 1e6;
-    let shear = [0.0, RATE, 0.0, 0.0];
-    let compression = [-RATE, 0.0, 0.0, -RATE];
-    let [shear, compression] = [shear, compression].map(|l| [false, true].map(|on| heating(l, on)));
+    let form = SphForm::Conventional;
+    let [shear, compression] =
+        [SHEAR, COMPRESSION].map(|l| [false, true].map(|on| heating(form, l, on)));
     println!("heating in shear {shear:?} W/kg, in compression {compression:?} W/kg");
     assert!(shear[0] > 0.03 * compression[0]);
     assert!(shear[1] < 1e-6 * shear[0]);
     // 10⁻⁴ c/h over |∇·v| is 2e-3 here.
     assert!((compression[1] / compression[0] - 1.0).abs() < 3e-3);
+}
+
+/// The limiter of the corrected form leaves shear the quadratic term alone, and compression everything.
+#[test]
+fn the_limiter_spares_shear() {
+    let [shear, compression] = [SHEAR, COMPRESSION].map(|l| heating(SphForm::Corrected, l, false));
+    let whole = heating(SphForm::Conventional, COMPRESSION, false);
+    println!("heating in shear {shear:e} W/kg, in compression {compression:e}, without {whole:e}");
+    assert!(shear < 0.003 * compression, "{shear} of {compression}");
+    assert!((compression / whole - 1.0).abs() < 0.05, "{compression} for {whole}");
 }
 
 /// Cold ideal gas of γ = 5/3, which Mie–Grüneisen is with `b = γ₀` and no cold pressure.

@@ -19,20 +19,20 @@ pub struct CorrectedRecord {
     pub hourglass: [f64; 3],
     /// Density (kg/m³).
     pub density: f64,
-    /// Sound speed (m/s).
-    pub sound_speed: f64,
+    /// Sound speed by the limiter of the linear viscosity (m/s).
+    pub viscous_speed: f64,
 }
 
 impl CorrectedRecord {
-    /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³) and sound
-    /// speed (m/s).
+    /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³), sound speed
+    /// (m/s) and the limiter of the linear viscosity.
     #[inline(always)]
     #[must_use]
     pub fn new(
         stress: &[f64; 9],
         displacement: &[f64; 3],
         stiffness: f64,
-        [density, sound_speed]: [f64; 2],
+        [density, sound_speed, limiter]: [f64; 3],
     ) -> Self {
         let modulus = stiffness * density * sound_speed * sound_speed;
         Self {
@@ -43,7 +43,7 @@ impl CorrectedRecord {
                 modulus * displacement[2],
             ],
             density,
-            sound_speed,
+            viscous_speed: limiter * sound_speed,
         }
     }
 }
@@ -62,8 +62,8 @@ impl PairStress for CorrectedRecord {
     }
 
     #[inline(always)]
-    fn sound_speed(&self) -> f64 {
-        self.sound_speed
+    fn viscous_speed(&self) -> f64 {
+        self.viscous_speed
     }
 
     /// `V_i ε : P_i Σ V_j (x_j − x_i) ⊗ ∇W_ij`: with all neighbours P M is symmetric.
@@ -106,7 +106,7 @@ impl PairStress for CorrectedRecord {
         let viscous = Viscous::<V>::begin(
             sums.viscosity,
             gather(&own, |record| record.density),
-            gather(&own, |record| record.sound_speed),
+            gather(&own, |record| record.viscous_speed),
         );
         let mut terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
         // Σ V_j ∇W_ij, which takes the own stress at the end.
@@ -131,7 +131,7 @@ impl PairStress for CorrectedRecord {
                 &terms,
                 (separation, pair.h, pair.beside),
                 &v,
-                (state.density, state.sound_speed),
+                (state.density, state.viscous_speed),
                 shown,
             );
             fastest = fastest.min_where_positive(now.mu, kernel.inside);

@@ -21,8 +21,24 @@ pub(super) struct PlainSums<V> {
     pub(super) velocity: [V; 3],
     /// `Σ w_ij (x_i − x_j)`.
     pub(super) place: [V; 3],
+    /// `Σ w_ij (x_i − x_j)²`.
+    pub(super) square: V,
     /// `Σ w_ij`, which is `−tr M`.
     pub(super) weight: V,
+}
+
+impl<V: Lanes> PlainSums<V> {
+    /// The weight where there are neighbours: a particle alone has none.
+    #[inline(always)]
+    fn some_weight(&self) -> V {
+        self.weight.min(V::splat(-f64::MIN_POSITIVE))
+    }
+
+    /// Mean square of the distances of neighbours (m²).
+    #[inline(always)]
+    pub(super) fn square_length(&self) -> V {
+        self.square.div(self.some_weight())
+    }
 }
 
 /// Parts of a motion.
@@ -108,8 +124,7 @@ pub(super) fn motion<V: Lanes>(
         gradient[c] = gradient[c].add(spin[c]);
     }
     let linear = along(&expected, &plain.place);
-    // A particle alone has no weight.
-    let weight = plain.weight.min(V::splat(-f64::MIN_POSITIVE));
+    let weight = plain.some_weight();
     let rest = |a: usize| plain.velocity[a].add(linear[a]).div(weight);
     Motion {
         gradient,

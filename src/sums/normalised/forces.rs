@@ -128,7 +128,7 @@ impl PairStress for NormalisedRecord {
     }
 
     #[inline(always)]
-    fn sound_speed(&self) -> f64 {
+    fn viscous_speed(&self) -> f64 {
         self.sound_speed
     }
 

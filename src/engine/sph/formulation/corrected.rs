@@ -181,31 +181,37 @@ impl Gradient for CorrectedGradients<'_> {
             plain: failed(),
         };
         let zero = F64x8([0.0; LANES]);
-        let (gradient, rest, correction) = if among.moving {
+        let (gradient, rest, limiter, correction) = if among.moving {
             let corrected = sums.run::<V>();
             (
                 corrected.gradient,
                 corrected.rest,
+                corrected.limiter,
                 Some(corrected.correction),
             )
         } else {
             // No relative velocity: the sums would be these, and nobody may need the correction.
-            ([zero; 9], [zero; 3], None)
+            ([zero; 9], [zero; 3], zero, None)
         };
         let show = ShowCorrected {
             target: self,
             rest,
+            limiter,
             correction,
             sums,
         };
         (gradient, show)
     }
 
-    unsafe fn show_resting(&self, place: usize, state: [f64; 2]) {
+    unsafe fn show_resting(&self, place: usize, [density, sound_speed]: [f64; 2]) {
         // SAFETY: by the contract of this function.
         unsafe {
-            *self.records.slot(place) =
-                CorrectedRecord::new(&[0.0; 9], &[0.0; 3], self.hourglass, state);
+            *self.records.slot(place) = CorrectedRecord::new(
+                &[0.0; 9],
+                &[0.0; 3],
+                self.hourglass,
+                [density, sound_speed, 0.0],
+            );
         }
     }
 }
@@ -223,6 +229,8 @@ fn reflected(record: &CorrectedRecord, mirror_mask: u8) -> CorrectedRecord {
 struct ShowCorrected<'a, S> {
     target: &'a CorrectedGradients<'a>,
     rest: [F64x8; 3],
+    /// The limiter of the linear viscosity.
+    limiter: F64x8,
     /// Once it is known.
     correction: Option<Correction>,
     sums: CorrectedGradient<'a, S>,
@@ -255,7 +263,7 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
             for c in 0..9 {
                 own[c] = stress[c].0[k];
             }
-            let state = [after.density[k], after.sound_speed[k]];
+            let state = [after.density[k], after.sound_speed[k], self.limiter.0[k]];
             // SAFETY: by the contract of this function.
             unsafe {
                 let displacement = target.displacement.slot(i);
