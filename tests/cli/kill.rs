@@ -39,7 +39,7 @@ shape.box = { lower = ["-0.5 mm", "0.5 mm"], upper = ["0.5 mm", "1 mm"] }
 "#;
 
 /// Time for the samples of `make test`, all scenarios together.
-const SHORT: Duration = Duration::from_secs(8);
+const SHORT: Duration = Duration::from_secs(4);
 
 struct Place {
     folder: tempfile::TempDir,

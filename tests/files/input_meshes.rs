@@ -369,7 +369,7 @@ fn quads_of_an_obj_file_make_a_body_and_a_surface() {
 #[test]
 fn the_resolved_case_finds_its_files_and_knows_them() {
     let folder = tempfile::tempdir().unwrap();
-    write_obj(&folder.path().join("ball.obj"), &ball(3, 0.5));
+    write_obj(&folder.path().join("ball.obj"), &ball(2, 0.5));
     write_stl(&folder.path().join("part.stl"), &torus(3, 1.0, 0.4));
     let body = "[body.shape]\nunion = [\n\
         { stl = { file = \"part.stl\", unit = \"1 mm\" } },\n\

@@ -15,7 +15,7 @@ const LONGEST: usize = 2000;
 /// A long run keeps so many of its new texts, the shortest.
 const MOST_KEPT: usize = 20;
 /// Cases with more particles are not looked at beyond their reading.
-const MOST_PARTICLES: u64 = 1_000_000;
+const MOST_PARTICLES: u64 = 100_000;
 
 /// Words that mean something somewhere.
 const WORDS: &[&str] = &[
