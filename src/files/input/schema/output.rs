@@ -53,7 +53,7 @@ tables! {
         bodies: Option<Spanned<Vec<Spanned<String>>>> => "all";
         /// What of space it holds.
         region: Option<Spanned<KeepParams>> => "all";
-        /// True if numbers have 64 bits, false if 32.
+        /// Numbers of 64 bits or of 32.
         precision: Option<Precision> = Precision::Double;
     }
 }
