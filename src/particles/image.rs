@@ -1,6 +1,6 @@
 //! A particle or what stands of it behind symmetry planes.
 
-use crate::Mirrors;
+use crate::{MirrorMask, Mirrors};
 
 /// A particle or one of its mirror images: index in the store and the planes it is behind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -11,16 +11,16 @@ impl Image {
     /// Largest number of particles of a rank.
     pub const MAX_PARTICLES: usize = 1 << 29;
 
-    /// Image of particle `slot` behind the planes whose axis bits are set in `mirror_mask`.
+    /// Image of particle `slot` behind the planes of a mirror mask.
     #[inline]
     #[must_use]
-    pub fn new(slot: usize, mirror_mask: u8) -> Self {
-        debug_assert!(slot < Self::MAX_PARTICLES && mirror_mask < 8);
+    pub fn new(slot: usize, mirror_mask: MirrorMask) -> Self {
+        debug_assert!(slot < Self::MAX_PARTICLES);
         #[allow(
             clippy::cast_possible_truncation,
             reason = "checked when particles are counted"
         )]
-        Self(slot as u32 | u32::from(mirror_mask) << 29)
+        Self(slot as u32 | u32::from(mirror_mask.bits()) << 29)
     }
 
     /// Index in the store.
@@ -30,11 +30,11 @@ impl Image {
         self.0 as usize & (Self::MAX_PARTICLES - 1)
     }
 
-    /// Bit a set: behind the symmetry plane normal to axis a.
+    /// The symmetry planes that it stands behind.
     #[inline]
     #[must_use]
-    pub fn mirror_mask(self) -> u8 {
-        (self.0 >> 29) as u8
+    pub fn mirror_mask(self) -> MirrorMask {
+        MirrorMask::from_bits((self.0 >> 29) as u8)
     }
 }
 

@@ -1,10 +1,9 @@
 //! Symmetry planes: mirror images of particles behind them, and particles that cross them.
 
-use crate::{FieldInfo, Mirror, ParticleStore};
+use crate::{FieldInfo, Mirror, MirrorMask, ParticleStore};
 use model::SymmetryPlane;
 
-/// The symmetry planes of a case, at most one for each axis. An image has a mirror mask: bit a is set
-/// if it stands behind the plane normal to axis a.
+/// The symmetry planes of a case, at most one for each axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Mirrors {
     planes: [Option<f64>; 3],
@@ -45,37 +44,37 @@ impl Mirrors {
         self.planes.iter().all(Option::is_none)
     }
 
-    /// The mirror masks of all images of a particle, itself left out.
-    pub fn masks(&self) -> impl Iterator<Item = u8> {
-        let mask = (0..3).filter(|&axis| self.planes[axis].is_some());
-        mirror_masks(mask.fold(0, |mask, axis| mask | 1 << axis), false)
+    /// The mirror masks of a particle and all its images, itself first.
+    pub fn masks(&self) -> impl Iterator<Item = MirrorMask> {
+        let axes = (0..3).filter(|&axis| self.planes[axis].is_some());
+        axes.fold(MirrorMask::OWN, MirrorMask::with).subsets(true)
     }
 
-    /// Bits of the planes that a particle at `position` (m) stands within `reach` (m) of. Its
-    /// images are those of all nonzero subsets of these bits.
+    /// The planes that a particle at `position` (m) stands within `reach` (m) of. Its images are
+    /// those behind all subsets of these planes.
     #[inline]
     #[must_use]
-    pub fn near(&self, position: &[f64; 3], reach: f64) -> u8 {
-        let mut bits = 0;
+    pub fn near(&self, position: &[f64; 3], reach: f64) -> MirrorMask {
+        let mut planes = MirrorMask::OWN;
         for axis in 0..3 {
             if let Some(plane) = self.planes[axis]
                 && position[axis] - plane <= reach
             {
-                bits |= 1 << axis;
+                planes = planes.with(axis);
             }
         }
-        bits
+        planes
     }
 
     /// The image of a position under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_position(&self, position: &[f64; 3], mirror_mask: u8) -> [f64; 3] {
-        if mirror_mask == 0 {
+    pub fn reflect_position(&self, position: &[f64; 3], mirror_mask: MirrorMask) -> [f64; 3] {
+        if mirror_mask.is_own() {
             return *position;
         }
         std::array::from_fn(|axis| match self.planes[axis] {
-            Some(plane) if mirror_mask >> axis & 1 == 1 => 2.0 * plane - position[axis],
+            Some(plane) if mirror_mask.has(axis) => 2.0 * plane - position[axis],
             _ => position[axis],
         })
     }
@@ -83,12 +82,12 @@ impl Mirrors {
     /// The image of a vector under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_vector(vector: &[f64; 3], mirror_mask: u8) -> [f64; 3] {
-        if mirror_mask == 0 {
+    pub fn reflect_vector(vector: &[f64; 3], mirror_mask: MirrorMask) -> [f64; 3] {
+        if mirror_mask.is_own() {
             return *vector;
         }
         std::array::from_fn(|axis| {
-            if mirror_mask >> axis & 1 == 1 {
+            if mirror_mask.has(axis) {
                 -vector[axis]
             } else {
                 vector[axis]
@@ -99,17 +98,11 @@ impl Mirrors {
     /// The image of a symmetric tensor (xx yy zz xy xz yz) under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_symmetric(tensor: &[f64; 6], mirror_mask: u8) -> [f64; 6] {
-        if mirror_mask == 0 {
+    pub fn reflect_symmetric(tensor: &[f64; 6], mirror_mask: MirrorMask) -> [f64; 6] {
+        if mirror_mask.is_own() {
             return *tensor;
         }
-        let flip = |a: u8, b: u8| {
-            if (mirror_mask >> a ^ mirror_mask >> b) & 1 == 1 {
-                -1.0
-            } else {
-                1.0
-            }
-        };
+        let flip = |a, b| if mirror_mask.flips(a, b) { -1.0 } else { 1.0 };
         let mut image = *tensor;
         image[3] *= flip(0, 1);
         image[4] *= flip(0, 2);
@@ -120,11 +113,11 @@ impl Mirrors {
     /// The image of a tensor (row-major) under a mirror mask.
     #[inline]
     #[must_use]
-    pub fn reflect_tensor(tensor: &[f64; 9], mirror_mask: u8) -> [f64; 9] {
+    pub fn reflect_tensor(tensor: &[f64; 9], mirror_mask: MirrorMask) -> [f64; 9] {
         let mut image = *tensor;
         for a in 0..3 {
             for b in 0..3 {
-                if (mirror_mask >> a ^ mirror_mask >> b) & 1 == 1 {
+                if mirror_mask.flips(a, b) {
                     image[3 * a + b] *= -1.0;
                 }
             }
@@ -132,28 +125,28 @@ impl Mirrors {
         image
     }
 
-    /// Code of the planes that a position is beyond.
+    /// The planes that a position is beyond.
     #[inline]
     #[must_use]
-    pub fn beyond(&self, position: &[f64; 3]) -> u8 {
-        let mut mirror_mask = 0;
+    pub fn beyond(&self, position: &[f64; 3]) -> MirrorMask {
+        let mut planes = MirrorMask::OWN;
         for axis in 0..3 {
             if let Some(plane) = self.planes[axis]
                 && position[axis] < plane
             {
-                mirror_mask |= 1 << axis;
+                planes = planes.with(axis);
             }
         }
-        mirror_mask
+        planes
     }
 
     /// Exchanges an owned particle that has crossed a plane with its image, which has crossed
     /// the other way: both are the same material. All that a particle takes along when it changes
-    /// ranks, as it may next, is mirrored as the table of fields says. Returns the mirror mask, 0 for a
-    /// particle that stays.
-    pub fn fold(&self, particles: &mut ParticleStore, i: usize) -> u8 {
+    /// ranks, as it may next, is mirrored as the table of fields says. Returns the mirror mask, that of
+    /// the particle itself if it stays.
+    pub fn fold(&self, particles: &mut ParticleStore, i: usize) -> MirrorMask {
         let mirror_mask = self.beyond(&particles.position[i]);
-        if mirror_mask != 0 {
+        if !mirror_mask.is_own() {
             for field in particles.held(FieldInfo::leaves) {
                 let size = field.kind.bytes();
                 let value = &mut particles.bytes_mut(field.id)[i * size..(i + 1) * size];
@@ -164,7 +157,7 @@ impl Mirrors {
     }
 
     /// Puts the image under a mirror mask in the place of what one particle holds in a field.
-    fn reflect(&self, rule: Mirror, value: &mut [u8], mirror_mask: u8) {
+    fn reflect(&self, rule: Mirror, value: &mut [u8], mirror_mask: MirrorMask) {
         match rule {
             Mirror::Same => {}
             Mirror::Place => replace(value, |x| self.reflect_position(x, mirror_mask)),
@@ -181,11 +174,6 @@ fn replace<T: bytemuck::Pod>(value: &mut [u8], image: impl FnOnce(&T) -> T) {
     *value = image(value);
 }
 
-/// All nonzero subsets of the bits of `mask`, and zero first if `own`: mirror masks of images.
-pub fn mirror_masks(mask: u8, own: bool) -> impl Iterator<Item = u8> {
-    (u8::from(!own)..8).filter(move |mirror_mask| mirror_mask & !mask == 0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -199,20 +187,21 @@ mod tests {
         });
         let mirrors = Mirrors::new(&planes);
         let near = mirrors.near(&[0.1, 0.2, 0.0], 0.5);
-        assert_eq!(near, 0b11);
-        assert_eq!(mirror_masks(near, true).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert_eq!(mirror_masks(near, false).collect::<Vec<_>>(), [1, 2, 3]);
+        assert_eq!(near.bits(), 0b11);
+        let subsets = |own| near.subsets(own).map(MirrorMask::bits).collect::<Vec<_>>();
+        assert_eq!(subsets(true), [0, 1, 2, 3]);
+        assert_eq!(subsets(false), [1, 2, 3]);
         assert_eq!(
-            mirrors.reflect_position(&[0.1, 0.2, 0.3], 3),
+            mirrors.reflect_position(&[0.1, 0.2, 0.3], near),
             [-0.1, -0.2, 0.3]
         );
         let stress = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         assert_eq!(
-            Mirrors::reflect_symmetric(&stress, 1),
+            Mirrors::reflect_symmetric(&stress, MirrorMask::OWN.with(0)),
             [1.0, 2.0, 3.0, -4.0, -5.0, 6.0]
         );
         assert_eq!(
-            Mirrors::reflect_symmetric(&stress, 3),
+            Mirrors::reflect_symmetric(&stress, near),
             [1.0, 2.0, 3.0, 4.0, -5.0, -6.0]
         );
     }

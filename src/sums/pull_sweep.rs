@@ -106,7 +106,7 @@ impl<S: PairScale> Vectorised for PullChunk<'_, S> {
             // side adds up to twice the part of those behind a plane along its normal, and to none
             // along the plane.
             for axis in 0..3 {
-                let behind = |&j: &u32| all.images[j as usize].mirror_mask() >> axis & 1 == 1;
+                let behind = |&j: &u32| all.images[j as usize].mirror_mask().has(axis);
                 indices.clear();
                 indices.extend(neighbours.iter().copied().filter(behind));
                 if indices.is_empty() {

@@ -3,10 +3,9 @@
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use model::{Axis, SymmetryPlane};
-use particles::Mirrors;
 use particles::neighbours::MotionRecord;
 use particles::neighbours::{ClusterLists, ColumnGrid, ImageFacts, ImageState, Lengths, Sequence};
-use particles::{Image, Inactive};
+use particles::{Image, Inactive, MirrorMask, Mirrors};
 
 use crate::common::random::Random;
 
@@ -133,11 +132,13 @@ impl Cloud {
     /// All particles and, behind each plane that is near enough to matter, their images.
     pub fn images(&self) -> Vec<Image> {
         let farthest = self.smoothing_length.iter().copied().fold(0.0, f64::max);
-        let mut images: Vec<Image> = (0..self.id.len()).map(|i| Image::new(i, 0)).collect();
+        let mut images: Vec<Image> = (0..self.id.len())
+            .map(|i| Image::new(i, MirrorMask::OWN))
+            .collect();
         for (i, position) in self.position.iter().enumerate() {
             let near = self.mirrors.near(position, 2.0 * farthest);
-            let codes = (1..8).filter(|code| code & !near == 0);
-            images.extend(codes.map(|code| Image::new(i, code)));
+            let masks = near.subsets(false);
+            images.extend(masks.map(|mirror_mask| Image::new(i, mirror_mask)));
         }
         images
     }
@@ -228,8 +229,8 @@ impl Cloud {
 }
 
 impl Found {
-    /// (id, code) of the images in canonical order.
-    pub fn names(&self, cloud: &Cloud) -> Vec<(u64, u8)> {
+    /// (id, mirror mask) of the images in canonical order.
+    pub fn names(&self, cloud: &Cloud) -> Vec<(u64, MirrorMask)> {
         let images = self.sequence.images().iter();
         images
             .map(|image| (cloud.id[image.slot()], image.mirror_mask()))

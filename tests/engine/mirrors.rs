@@ -122,7 +122,7 @@ fn every_field_is_folded() {
     }
     particles.position[1] = [0.25, 7.0, -5.0];
     let before = particles.clone();
-    assert_eq!(mirrors.fold(&mut particles, 1), 0b101);
+    assert_eq!(mirrors.fold(&mut particles, 1).bits(), 0b101);
     for field in FIELDS {
         let size = field.kind.bytes();
         let part = |particles: &ParticleStore, slot: usize| {

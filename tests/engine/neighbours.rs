@@ -6,8 +6,8 @@ use crate::cloud::{Cloud, Found, Recipe};
 use crate::common::random::Random;
 use model::ContactClass;
 use numerics::ordered::ordered;
-use particles::Image;
 use particles::neighbours::{Chunk, ForeignLists, ForeignTable, PairList, SizeClasses};
+use particles::{Image, MirrorMask};
 use proptest::prelude::*;
 
 fn recipe() -> impl Strategy<Value = Recipe> {
@@ -38,8 +38,8 @@ fn recipe() -> impl Strategy<Value = Recipe> {
         )
 }
 
-/// What an image is ordered by: group, cell across, position along the column as bits that order so, id, code.
-type Key = (usize, [u32; 2], u64, u64, u8);
+/// What an image is ordered by: group, cell across, position along the column as bits that order so, id, mirror mask.
+type Key = (usize, [u32; 2], u64, u64, MirrorMask);
 
 fn key(cloud: &Cloud, image: Image) -> Key {
     let (group, x) = (cloud.group(image.slot()), cloud.place(image));
@@ -69,7 +69,7 @@ fn check_clusters(cloud: &Cloud, found: &Found) {
         assert!(padding.iter().all(|place| place == valid.last().unwrap()));
         for &place in valid {
             let image = images[place as usize];
-            assert_eq!(image.mirror_mask(), 0);
+            assert!(image.mirror_mask().is_own());
             assert_eq!(cloud.group(image.slot()), cluster.group);
             seen[image.slot()] += 1;
         }
@@ -87,7 +87,7 @@ fn check_own_lists(cloud: &Cloud, found: &Found) {
         let images = || list.iter().map(|&j| found.sequence.images()[j as usize]);
         assert_eq!(
             among.mirrors,
-            images().any(|image| image.mirror_mask() != 0)
+            images().any(|image| !image.mirror_mask().is_own())
         );
         let moves = |image: Image| cloud.velocity[image.slot()] != cloud.velocity[0];
         assert_eq!(among.moving, images().any(moves));
@@ -162,7 +162,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
         let mut expected = BTreeMap::new();
         for receiver in places.clone() {
             let image = images[receiver as usize];
-            if image.mirror_mask() != 0 || image.slot() >= cloud.owned {
+            if !image.mirror_mask().is_own() || image.slot() >= cloud.owned {
                 continue;
             }
             let row = body(receiver) * table.size_classes.count();
@@ -184,7 +184,7 @@ fn check_foreign_lists(cloud: &Cloud, found: &Found, table: &ForeignTable) {
     }
 }
 
-/// The order of the engine against a plain sort by (group, column, along, id, code).
+/// The order of the engine against a plain sort by (group, column, along, id, mirror mask).
 fn check_order(cloud: &Cloud, found: &Found) {
     let mut images = cloud.images();
     let mut first = BTreeMap::new();
@@ -196,9 +196,9 @@ fn check_order(cloud: &Cloud, found: &Found) {
         }
     }
     images.sort_by_key(|&image| {
-        let (group, cells, along, id, code) = key(cloud, image);
+        let (group, cells, along, id, mirror_mask) = key(cloud, image);
         let column = [0, 1].map(|k| cloud.grids[group].after(k, first[&group][k], cells[k]));
-        (group, column, along, id, code)
+        (group, column, along, id, mirror_mask)
     });
     assert_eq!(found.sequence.images(), images);
 }
@@ -243,9 +243,9 @@ fn large_clouds_agree_with_brute_force() {
     }
 }
 
-/// Many particles at one point, or at points with one coordinate in common: ids and codes decide.
+/// Many particles at one point, or at points with one coordinate in common: ids and mirror masks decide.
 #[test]
-fn ties_are_ordered_by_id_and_code() {
+fn ties_are_ordered_by_id_and_mirror_mask() {
     for planes in [0, 2] {
         let mut cloud = Cloud::new(&Recipe {
             seed: 3,

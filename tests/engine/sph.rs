@@ -83,7 +83,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
             * kernel.slope(distance, h).abs();
         for a in 0..3 {
             sum.acceleration[a] += force[a];
-            if images[j].mirror_mask() != 0 {
+            if !images[j].mirror_mask().is_own() {
                 sum.from_mirrors[a] += force[a];
             }
         }
@@ -135,7 +135,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
 
 /// The images behind planes among neighbours.
 fn mirrored(found: &Found, neighbours: &[u32]) -> Vec<u32> {
-    let is_image = |&&j: &&u32| found.sequence.images()[j as usize].mirror_mask() != 0;
+    let is_image = |&&j: &&u32| !found.sequence.images()[j as usize].mirror_mask().is_own();
     neighbours.iter().filter(is_image).copied().collect()
 }
 

@@ -8,7 +8,7 @@ use model::{
 };
 use numerics::kernel::Kernel;
 use particles::neighbours::MotionRecord;
-use particles::{Image, ParticleStore};
+use particles::{Image, MirrorMask, ParticleStore};
 
 use crate::common::{body, case};
 
@@ -89,7 +89,9 @@ impl World {
         Self {
             table: ContactTable::new(&case),
             touching,
-            images: (0..placed.len()).map(|i| Image::new(i, 0)).collect(),
+            images: (0..placed.len())
+                .map(|i| Image::new(i, MirrorMask::OWN))
+                .collect(),
             case,
             particles,
             motion,

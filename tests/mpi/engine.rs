@@ -14,9 +14,9 @@ use comm::{Comm, Exchange, Joint, waited};
 use engine::domain::{Balance, Decomposition, Halo, Migration, NestedSlabs, RankSpeeds, Reaches};
 use engine::step::{Simulation, Timers};
 use model::{Axis, Overlap, SelfContact, SymmetryPlane};
-use particles::Mirrors;
 use particles::{
-    ActiveMut, FIELDS, FieldInfo, HaloPhase, Image, Inactive, ParticleStore, SCRATCH_WORDS, Select,
+    ActiveMut, FIELDS, FieldInfo, HaloPhase, Image, Inactive, MirrorMask, Mirrors, ParticleStore,
+    SCRATCH_WORDS, Select,
 };
 
 /// Particles of the tests, spread over a box of this many units.
@@ -191,7 +191,7 @@ fn migration_carries_every_field_by_any_distance() {
     );
 }
 
-/// The images (particle, code) that stand within reach of any particle of this rank, from the
+/// The images (particle, mirror mask) that stand within reach of any particle of this rank, from the
 /// list of all particles.
 fn needed(
     comm: &Comm,
@@ -199,7 +199,7 @@ fn needed(
     mirrors: &Mirrors,
     round: u64,
     reach: impl Fn(u64) -> f64,
-) -> BTreeSet<(u64, u8)> {
+) -> BTreeSet<(u64, MirrorMask)> {
     let all: Vec<_> = (0..TOTAL).map(|k| (k, position(k, round))).collect();
     let mut needed = BTreeSet::new();
     for &(i, x) in &all {
@@ -207,14 +207,14 @@ fn needed(
             continue;
         }
         for &(j, y) in &all {
-            for code in 0..8_u8 {
-                if (0..3).any(|a| code >> a & 1 == 1 && mirrors.plane(a).is_none()) {
+            for mirror_mask in MirrorMask::all() {
+                if (0..3).any(|a| mirror_mask.has(a) && mirrors.plane(a).is_none()) {
                     continue;
                 }
-                let y = mirrors.reflect_position(&y, code);
+                let y = mirrors.reflect_position(&y, mirror_mask);
                 let r2: f64 = (0..3).map(|a| (x[a] - y[a]).powi(2)).sum();
                 if r2 < (reach(i) + reach(j)).powi(2) {
-                    needed.insert((j, code));
+                    needed.insert((j, mirror_mask));
                 }
             }
         }
@@ -231,13 +231,13 @@ fn check_halo(
     comm: &Comm,
     particles: &ParticleStore,
     halo: &Halo,
-    needed: &BTreeSet<(u64, u8)>,
+    needed: &BTreeSet<(u64, MirrorMask)>,
     round: u64,
 ) {
     let numbers = numbers();
     let mut held = BTreeSet::new();
     let mut copies = BTreeSet::new();
-    let owned = (0..particles.owned()).map(|i| Image::new(i, 0));
+    let owned = (0..particles.owned()).map(|i| Image::new(i, MirrorMask::OWN));
     for image in owned.chain(halo.others().iter().copied()) {
         let slot = image.slot();
         assert!(slot < particles.owned() + particles.halo());

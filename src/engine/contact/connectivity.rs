@@ -68,7 +68,7 @@ impl Connectivity {
         fragments.zip(images).for_each(|(part, image)| {
             let i = image.slot();
             // Behind a plane that cuts the part stands the part itself.
-            let mirror_mask = u32::from(image.mirror_mask()) & !particles.part_planes[i];
+            let mirror_mask = u32::from(image.mirror_mask().bits()) & !particles.part_planes[i];
             *part = Fragment {
                 label: particles.part[i],
                 mirror_mask: mirror_mask.into(),
@@ -104,12 +104,12 @@ impl Connectivity {
                     let mut there = sets.root(slot(j));
                     for (k, &i) in cluster.valid().iter().enumerate() {
                         // Roots may be old, which costs a look more.
-                        if (there == here[k] && mirror_mask == 0)
+                        if (there == here[k] && mirror_mask.is_own())
                             || !lists.in_support(cluster.group, i, j)
                         {
                             continue;
                         }
-                        sets.mark(own[k], mirror_mask.into());
+                        sets.mark(own[k], mirror_mask.bits().into());
                         sets.join(here[k], there);
                         here[k] = sets.root(own[k]);
                         there = here[k];
@@ -184,7 +184,7 @@ impl Connectivity {
 
     /// True if an image of an owned particle that rests is no stranger to what else rests of its body.
     pub(crate) fn lets_rest(&self, particles: &ParticleStore, image: Image) -> bool {
-        let (i, mirror_mask) = (image.slot(), u32::from(image.mirror_mask()));
+        let (i, mirror_mask) = (image.slot(), u32::from(image.mirror_mask().bits()));
         !self.is_active
             || particles.part[i] == self.at_rest[particles.body[i] as usize].0
                 && mirror_mask & !particles.part_planes[i] == 0

@@ -179,7 +179,7 @@ impl<'a> Receiver<'a> {
     /// Books a force (N) of `other` by where that stands and by its body; gives what is by this body.
     #[inline]
     fn exert(&mut self, other: &ContactParticle, force: &[f64; 3]) -> &mut BodyForce {
-        if other.mirror_mask != 0 {
+        if !other.mirror_mask.is_own() {
             for a in 0..3 {
                 self.sum.from_mirrors[a] += force[a];
             }

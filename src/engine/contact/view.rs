@@ -2,9 +2,8 @@
 
 use super::ContactTable;
 use numerics::vector::square;
-use particles::Mirrors;
 use particles::neighbours::{Lists, MotionRecord};
-use particles::{Image, ParticleStore};
+use particles::{Image, MirrorMask, Mirrors, ParticleStore};
 
 /// Inputs of the contact sums.
 #[derive(Clone, Copy)]
@@ -32,7 +31,7 @@ pub(crate) struct ContactParticle {
     /// Reference volume (m^d).
     pub volume: f64,
     /// The planes that it is mirrored by.
-    pub mirror_mask: u8,
+    pub mirror_mask: MirrorMask,
     pub position: [f64; 3],
     pub velocity: [f64; 3],
 }

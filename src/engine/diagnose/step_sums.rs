@@ -103,7 +103,7 @@ impl StepSums {
             .into_par_iter()
             .enumerate()
             .for_each(|(chunk, (crossed, positions))| {
-                let beyond = |(_, x): &(usize, &[f64; 3])| mirrors.beyond(x) != 0;
+                let beyond = |(_, x): &(usize, &[f64; 3])| !mirrors.beyond(x).is_own();
                 let indices = positions.iter().enumerate().filter(beyond);
                 crossed.clear();
                 crossed.extend(indices.map(|(k, _)| chunk * GRAIN + k));

@@ -12,7 +12,8 @@ use super::payload::Payload;
 use comm::{Comm, Exchange, Traffic};
 use numerics::collector::Collector;
 use particles::{
-    Active, ActiveMut, HaloImages, HaloPhase, Image, Mirrors, ParticleStore, copy_at_once,
+    Active, ActiveMut, HaloImages, HaloPhase, Image, MirrorMask, Mirrors, ParticleStore,
+    copy_at_once,
 };
 
 /// Slabs of ranks: each has its particles in its own slab.
@@ -133,7 +134,7 @@ impl Halo {
     fn list_images(&mut self, peers: Range<usize>, mut first: usize) -> usize {
         for k in peers {
             let needs = &self.exchange.incoming(k)[..self.received[k]];
-            let images = |i: usize| images(first + i, needs[i], 0);
+            let images = |i: usize| images(first + i, needs[i]);
             let all = (needs.len(), SHARE);
             self.collector.extend(&mut self.others, all, images);
             first += needs.len();
@@ -368,16 +369,18 @@ impl Halo {
         let own = |task: usize| {
             let run = of_peer(&found[task], MYSELF);
             run.iter()
-                .flat_map(|entry| images(entry.particle as usize, entry.needs, 1))
+                .flat_map(|entry| images(entry.particle as usize, entry.needs))
         };
         self.collector.extend(&mut self.own, (tasks, 1), own);
     }
 }
 
-/// The images of a particle that `needs` names, from a mirror mask on.
-fn images(slot: usize, needs: u8, first: u8) -> impl Iterator<Item = Image> {
-    let mirror_masks = (first..8).filter(move |mirror_mask| needs >> mirror_mask & 1 == 1);
-    mirror_masks.map(move |mirror_mask| Image::new(slot, mirror_mask))
+/// The images of a particle that `needs` names, in the order of their mirror masks.
+fn images(slot: usize, needs: u8) -> impl Iterator<Item = Image> {
+    let is_needed = move |mirror_mask: &MirrorMask| needs >> mirror_mask.bits() & 1 == 1;
+    MirrorMask::all()
+        .filter(is_needed)
+        .map(move |mirror_mask| Image::new(slot, mirror_mask))
 }
 
 /// Has all threads fill the messages to all peers.

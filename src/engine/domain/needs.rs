@@ -1,7 +1,7 @@
 //! Particles that ranks need, and the images of them.
 
 use numerics::ordered::{disordered, ordered};
-use particles::{Mirrors, mirror_masks};
+use particles::{MirrorMask, Mirrors};
 
 /// The box around a rank's particles, and how far these reach: what it tells those that are near before the
 /// exchange.
@@ -146,7 +146,7 @@ impl<'a> Finder<'a> {
     pub(super) fn find(&self, i: usize, position: &[f64; 3], reach: f64, found: &mut Vec<Needed>) {
         let range = reach + self.farthest;
         let near = self.mirrors.near(position, range);
-        if near != 0 {
+        if !near.is_own() {
             note(
                 self,
                 (i, position),
@@ -175,14 +175,14 @@ fn note(
     finder: &Finder,
     (i, position): (usize, &[f64; 3]),
     (peer, there): (u16, &Extent),
-    (near, reach): (u8, f64),
+    (near, reach): (MirrorMask, f64),
     found: &mut Vec<Needed>,
 ) {
     let mut needs = 0;
-    for mirror_mask in mirror_masks(near, peer != MYSELF) {
+    for mirror_mask in near.subsets(peer != MYSELF) {
         let image = finder.mirrors.reflect_position(position, mirror_mask);
         if there.is_near((&image, &image), reach + there.reach) {
-            needs |= 1 << mirror_mask;
+            needs |= 1 << mirror_mask.bits();
         }
     }
     if needs != 0 {

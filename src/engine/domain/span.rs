@@ -3,7 +3,7 @@
 
 use numerics::ordered::{disordered, ordered};
 use numerics::vector::norm;
-use particles::Mirrors;
+use particles::{MirrorMask, Mirrors};
 
 /// Smallest and largest coordinates (m) and velocities (m/s) of some particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,7 +73,7 @@ impl Span {
     }
 
     /// Its image behind planes.
-    pub fn reflected(&self, mirrors: &Mirrors, mirror_mask: u8) -> Self {
+    pub fn reflected(&self, mirrors: &Mirrors, mirror_mask: MirrorMask) -> Self {
         if self.is_empty() {
             return *self;
         }
@@ -220,6 +220,10 @@ mod tests {
         both.join(&Span::NONE);
         assert_eq!(Span::read(&least), both);
         let mirrors = Mirrors::default();
-        assert!(Span::NONE.reflected(&mirrors, 1).is_empty());
+        assert!(
+            Span::NONE
+                .reflected(&mirrors, MirrorMask::OWN.with(0))
+                .is_empty()
+        );
     }
 }

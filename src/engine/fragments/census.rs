@@ -196,7 +196,7 @@ fn shares(
     mirrors: &Mirrors,
     kind: impl Fn(usize) -> usize + Sync,
 ) -> Census {
-    let fold = mirrors.masks().count() as u64 + 1;
+    let fold = mirrors.masks().count() as u64;
     let tasks = matter.owned.div_ceil(SHARE);
     let parts = (0..tasks).into_par_iter().map(|task| {
         let mut sums = [const { ExactSum::new() }; 3];

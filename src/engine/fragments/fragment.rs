@@ -47,7 +47,7 @@ impl Fragment {
         (mirrors, dimension): (&Mirrors, usize),
     ) -> Self {
         let reaches = |a: usize| planes >> a & 1 == 1;
-        let all = mirrors.masks().count() + 1;
+        let all = mirrors.masks().count();
         let images = 1_u64 << planes.count_ones();
         let m = moments.mass;
         let mut centre = moments.position.map(|x| x / m);

@@ -9,8 +9,7 @@ use super::matter::{Matter, Rule, Surroundings, link_reach};
 use super::sets::Sets;
 use crate::domain::Halo;
 use comm::Comm;
-use particles::Image;
-use particles::Mirrors;
+use particles::{Image, MirrorMask, Mirrors};
 
 /// Bytes that a search takes for each particle or image while it lasts: its place, twice, and the
 /// numbers of some eighteen neighbours, with spare room.
@@ -64,7 +63,7 @@ pub(super) fn link(
 
 impl<'a> Links<'a> {
     fn new(matter: &'a Matter, mirrors: &Mirrors, others: &[Image], rule: &Rule) -> Self {
-        let own = (0..matter.owned).map(|i| Image::new(i, 0));
+        let own = (0..matter.owned).map(|i| Image::new(i, MirrorMask::OWN));
         let place = |image: Image| {
             let i = image.slot();
             let found = matter.included[i] && matter.size[i] > 0.0;
@@ -175,7 +174,7 @@ impl<'a> Links<'a> {
 
     /// True if a place is a particle of this rank itself.
     fn receives(&self, place: &Place) -> bool {
-        place.image.mirror_mask() == 0 && place.image.slot() < self.matter.owned
+        place.image.mirror_mask().is_own() && place.image.slot() < self.matter.owned
     }
 
     fn linked(&self, a: &Place, b: &Place) -> bool {
@@ -241,8 +240,8 @@ impl<'a> Links<'a> {
             for other in firm {
                 let mirror_mask = other.image.mirror_mask();
                 sets.join(own, whole(other.image.slot()));
-                if mirror_mask != 0 {
-                    sets.mark(own, mirror_mask.into());
+                if !mirror_mask.is_own() {
+                    sets.mark(own, mirror_mask.bits().into());
                 }
             }
             // A bridge of another rank may be joined with this one, which that rank alone knows.

@@ -123,7 +123,7 @@ pub fn images(mirrors: &Mirrors, positions: &[[f64; 3]], sizes: &[f64], link: f6
     let all = positions.iter().zip(sizes).enumerate();
     let near = all.flat_map(|(i, (position, &size))| {
         let near = mirrors.near(position, link_reach(link, size) + farthest);
-        let mirror_masks = (1..8).filter(move |mirror_mask| mirror_mask & !near == 0);
+        let mirror_masks = near.subsets(false);
         mirror_masks.map(move |mirror_mask| Image::new(i, mirror_mask))
     });
     near.collect()

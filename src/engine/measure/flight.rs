@@ -9,7 +9,7 @@ use super::remains::{Belongs, Remains};
 use comm::Comm;
 use model::{Debris, Slab};
 use numerics::vector::{dot, norm};
-use particles::Mirrors;
+use particles::{MirrorMask, Mirrors};
 
 /// All mass, in whole numbers.
 const UNIT: f64 = 17_592_186_044_416.0;
@@ -59,8 +59,9 @@ pub struct View<'a> {
     pub axis: [f64; 2],
     /// Flags of the particles that are debris.
     pub is_debris: Vec<bool>,
-    /// Codes of the images behind symmetry planes that the flight does not run along, and of the particle itself.
-    mirror_masks: Vec<u8>,
+    /// Mirror masks of the particle itself and of its images behind symmetry planes that the flight does
+    /// not run along.
+    mirror_masks: Vec<MirrorMask>,
     /// Number of images that fly as each of them does, itself with them.
     alike: u32,
 }
@@ -100,10 +101,11 @@ impl<'a> View<'a> {
     /// Of debris that has left a plate or a target.
     pub fn new(debris: &'a Debris, of: Option<(&Slab, &Remains)>, matter: &'a Matter<'a>) -> Self {
         let along = |a: &usize| debris.direction[*a] == 0.0;
-        let bits = (0..3).filter(along).fold(0, |bits, a| bits | 1_u8 << a);
-        let images = || std::iter::once(0).chain(matter.mirrors.masks());
+        let planes = (0..3).filter(along);
+        let planes = planes.fold(MirrorMask::OWN, MirrorMask::with);
+        let images = || matter.mirrors.masks();
         let alike = images()
-            .filter(|mirror_mask| mirror_mask & !bits == 0)
+            .filter(|mirror_mask| mirror_mask.is_within(planes))
             .count();
         Self {
             debris,
@@ -112,7 +114,7 @@ impl<'a> View<'a> {
             axis: [0.0; 2],
             is_debris: is_debris(debris, of, matter),
             mirror_masks: images()
-                .filter(|mirror_mask| mirror_mask & bits == 0)
+                .filter(|mirror_mask| mirror_mask.is_disjoint(planes))
                 .collect(),
             alike: u32::try_from(alike).unwrap_or(1),
         }

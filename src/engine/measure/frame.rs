@@ -1,7 +1,7 @@
 //! A plane and its normal: coordinates across it and along it.
 
 use numerics::vector::{cross, dot};
-use particles::Mirrors;
+use particles::{MirrorMask, Mirrors};
 
 /// Two unit vectors in a plane, and its normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,20 +36,20 @@ impl Frame {
     }
 
     /// Places (m) of symmetry planes on the vectors across the normal that are normal to them, and
-    /// the bits of these planes in the mirror masks of images.
+    /// these planes by the axes that they are normal to.
     #[must_use]
-    pub fn planes(&self, mirrors: &Mirrors) -> ([Option<f64>; 2], u8) {
-        let (mut planes, mut bits) = ([None; 2], 0);
+    pub fn planes(&self, mirrors: &Mirrors) -> ([Option<f64>; 2], MirrorMask) {
+        let (mut planes, mut along) = ([None; 2], MirrorMask::OWN);
         for (plane, axis) in planes.iter_mut().zip(&self.axes) {
             for a in 0..3 {
                 let is_normal = (0..3).all(|b| b == a || axis[b] == 0.0);
                 if let Some(place) = mirrors.plane(a).filter(|_| is_normal) {
                     *plane = Some(axis[a] * place);
-                    bits |= 1 << a;
+                    along = along.with(a);
                 }
             }
         }
-        (planes, bits)
+        (planes, along)
     }
 
     /// The place (m) of coordinates (m).
@@ -72,11 +72,14 @@ mod tests {
         let [u, w, _] = Frame::new(&[0.0, -1.0, 0.0]).axes;
         assert_eq!(
             planes([0.0, -1.0, 0.0]),
-            ([Some(2.0 * u[0]), Some(3.0 * w[2])], 0b101)
+            (
+                [Some(2.0 * u[0]), Some(3.0 * w[2])],
+                MirrorMask::from_bits(0b101)
+            )
         );
-        assert_eq!(planes([1.0, 0.0, 0.0]).1, 0b100);
-        assert_eq!(planes([0.8, 0.6, 0.0]).1, 0b100);
-        assert_eq!(planes([0.8, 0.0, 0.6]), ([None; 2], 0));
+        assert_eq!(planes([1.0, 0.0, 0.0]).1.bits(), 0b100);
+        assert_eq!(planes([0.8, 0.6, 0.0]).1.bits(), 0b100);
+        assert_eq!(planes([0.8, 0.0, 0.6]), ([None; 2], MirrorMask::OWN));
     }
 
     #[test]

@@ -161,7 +161,7 @@ impl Reader {
         search.begin();
         let images = lists.images();
         let weights = Weights::<V>::new(&means.kernel, matter.particles);
-        for mirror_mask in std::iter::once(0).chain(means.mirrors.masks()) {
+        for mirror_mask in means.mirrors.masks() {
             let at = means.mirrors.reflect_position(&self.gauge.at, mirror_mask);
             for group in 0..lists.groups.count() {
                 let begin = search.found().len();

@@ -115,7 +115,7 @@ impl Shares {
 fn key(matter: &Matter, one: &One) -> [u64; KEY] {
     let [group, index] = one.listed;
     let [column, along] = matter.lists.sequence().rank_in_order(group, index);
-    let first = u64::from(one.mirror_mask) << 32 | group as u64;
+    let first = u64::from(one.mirror_mask.bits()) << 32 | group as u64;
     [first, column, along, matter.particles.id[one.i]]
 }
 

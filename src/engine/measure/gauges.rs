@@ -281,7 +281,7 @@ fn nearest(gauge: &Gauge, case: &Case, particles: &ParticleStore, lists: &Lists)
         lists.near_point(&gauge.at, range, |index, square| {
             let image = lists.images()[index];
             let i = image.slot();
-            let own = image.mirror_mask() == 0 && i < particles.owned();
+            let own = image.mirror_mask().is_own() && i < particles.owned();
             if own && reads(case, gauge.body, particles.body[i]) {
                 best = best.min([square.to_bits(), particles.id[i]]);
             }

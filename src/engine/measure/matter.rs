@@ -99,8 +99,7 @@ impl<'a> Matter<'a> {
     /// A particle's positions (m) and velocities (m/s), those of its images with them.
     pub fn images(&self, i: usize) -> impl Iterator<Item = ([f64; 3], [f64; 3])> {
         let (x, v) = (&self.position[i], &self.velocity[i]);
-        let mirror_masks = std::iter::once(0).chain(self.mirrors.masks());
-        mirror_masks.map(move |mirror_mask| {
+        self.mirrors.masks().map(move |mirror_mask| {
             (
                 self.mirrors.reflect_position(x, mirror_mask),
                 Mirrors::reflect_vector(v, mirror_mask),

@@ -1,6 +1,7 @@
 //! Input of a gauge: images of particles with their weights, and sums over them.
 
 use numerics::lanes::{LANES, Lanes};
+use particles::MirrorMask;
 
 /// Images of particles that a gauge reads, in canonical order.
 #[derive(Debug, Default)]
@@ -19,7 +20,7 @@ pub struct Near {
 #[derive(Debug, Clone, Copy)]
 struct Part {
     end: usize,
-    mirror_mask: u8,
+    mirror_mask: MirrorMask,
     group: usize,
 }
 
@@ -27,7 +28,7 @@ struct Part {
 #[derive(Debug, Clone, Copy)]
 pub struct One {
     pub i: usize,
-    pub mirror_mask: u8,
+    pub mirror_mask: MirrorMask,
     pub weight: f64,
     /// Its place in the lists: group and place.
     pub listed: [usize; 2],
@@ -58,7 +59,7 @@ impl Near {
     }
 
     /// Ends the images of a mirror mask and group.
-    pub fn part(&mut self, end: usize, mirror_mask: u8, group: usize) {
+    pub fn part(&mut self, end: usize, mirror_mask: MirrorMask, group: usize) {
         self.parts.push(Part {
             end,
             mirror_mask,
@@ -69,7 +70,7 @@ impl Near {
     /// A particle alone, of the weight one.
     pub fn set_carrier(&mut self, i: usize) {
         self.clear();
-        self.part(1, 0, 0);
+        self.part(1, MirrorMask::OWN, 0);
         let particle = u32::try_from(i).unwrap_or(u32::MAX);
         self.set(&[0], |_| particle);
         self.weigh(&[1.0; LANES]);
@@ -123,7 +124,7 @@ impl Near {
         self.parts.iter().any(|part| {
             let is_empty = part.end == begin;
             begin = part.end;
-            part.mirror_mask != 0 && !is_empty
+            !part.mirror_mask.is_own() && !is_empty
         })
     }
 
@@ -135,7 +136,8 @@ impl Near {
             while part.is_some_and(|part| part.end <= k) {
                 part = parts.next();
             }
-            let (mirror_mask, group) = part.map_or((0, 0), |part| (part.mirror_mask, part.group));
+            let (mirror_mask, group) =
+                part.map_or((MirrorMask::OWN, 0), |part| (part.mirror_mask, part.group));
             One {
                 i: self.particles[k] as usize,
                 mirror_mask,
@@ -213,8 +215,9 @@ mod tests {
         for count in [1, 8, 19_u32] {
             let mut near = Near::default();
             let places: Vec<u32> = (0..count).collect();
-            near.part(2.min(count as usize), 0, 1);
-            near.part(count as usize, 3, 0);
+            let corner = MirrorMask::from_bits(3);
+            near.part(2.min(count as usize), MirrorMask::OWN, 1);
+            near.part(count as usize, corner, 0);
             near.set(&places, |place| 50 - place);
             for eight in 0..near.eights() {
                 near.weigh(&near.eight(eight).map(|i| 1.0 / f64::from(i)));
@@ -224,7 +227,10 @@ mod tests {
             let mut lanes = [LaneSum::default(); 2];
             for (k, one) in near.iter().enumerate() {
                 assert_eq!((one.i, one.listed[1]), (50 - k, k));
-                assert_eq!(one.mirror_mask, if k < 2 { 0 } else { 3 });
+                assert_eq!(
+                    one.mirror_mask,
+                    if k < 2 { MirrorMask::OWN } else { corner }
+                );
                 lanes[0].add(k, one.weight);
                 lanes[1].add(k, one.weight * value(one.i));
             }

@@ -4,9 +4,9 @@ use super::near::{LaneSum, Near};
 use material::LANES;
 use model::Case;
 use numerics::lanes::Lanes as Vector;
-use particles::Mirrors;
 use particles::{
-    FIELDS, FieldInfo, FieldKind, Mirror, ParticleStore, STRESS, TEMPERATURE, VON_MISES_STRESS,
+    FIELDS, FieldInfo, FieldKind, Mirror, MirrorMask, Mirrors, ParticleStore, STRESS, TEMPERATURE,
+    VON_MISES_STRESS,
 };
 
 /// Something that particles hold, in numbers.
@@ -86,7 +86,7 @@ impl Reading {
         case: &Case,
         particles: &ParticleStore,
         i: usize,
-        mirror_mask: u8,
+        mirror_mask: MirrorMask,
     ) -> [f64; MOST] {
         let mut all = [0.0; MOST];
         match self {
@@ -170,7 +170,7 @@ fn sums_of_images(rule: Mirror, values: &[[f64; 3]], near: &Near) -> [f64; 3] {
 }
 
 /// The image of a field's numbers.
-fn reflect(rule: Mirror, all: &mut [f64; MOST], mirror_mask: u8) {
+fn reflect(rule: Mirror, all: &mut [f64; MOST], mirror_mask: MirrorMask) {
     match rule {
         Mirror::Same | Mirror::Place => {}
         Mirror::Vector => {
@@ -187,7 +187,7 @@ fn reflect(rule: Mirror, all: &mut [f64; MOST], mirror_mask: u8) {
 
 /// The stress (Pa, tension positive) `s − p I` of an owned particle's image.
 #[must_use]
-pub fn stress(particles: &ParticleStore, i: usize, mirror_mask: u8) -> [f64; 6] {
+pub fn stress(particles: &ParticleStore, i: usize, mirror_mask: MirrorMask) -> [f64; 6] {
     let mut stress = Mirrors::reflect_symmetric(&particles.deviatoric_stress[i], mirror_mask);
     for normal in &mut stress[..3] {
         *normal -= particles.pressure[i];

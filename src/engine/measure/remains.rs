@@ -13,7 +13,7 @@ use super::voxels::{Grain, Voxels};
 use super::window::Window;
 use comm::Comm;
 use model::{Include, Slab};
-use particles::Mirrors;
+use particles::{MirrorMask, Mirrors};
 
 /// Matter has flowed beyond this plastic strain: some elastic and plastic waves do not count.
 const FLOWED: f64 = 0.05;
@@ -166,25 +166,25 @@ impl Remains {
 struct Halves {
     /// Their places on the first two axes (m).
     planes: [Option<f64>; 2],
-    /// Codes of images behind other planes, and of the particle itself.
-    mirror_masks: Vec<u8>,
+    /// Mirror masks of the particle itself and of its images behind other planes.
+    mirror_masks: Vec<MirrorMask>,
 }
 
 impl Halves {
     fn new(frame: &Frame, mirrors: &Mirrors) -> Self {
-        let (planes, bits) = frame.planes(mirrors);
-        let mirror_masks = std::iter::once(0).chain(mirrors.masks());
+        let (planes, along) = frame.planes(mirrors);
         Self {
             planes,
-            mirror_masks: mirror_masks
-                .filter(|mirror_mask| mirror_mask & bits == 0)
+            mirror_masks: mirrors
+                .masks()
+                .filter(|mirror_mask| mirror_mask.is_disjoint(along))
                 .collect(),
         }
     }
 }
 
 /// Coordinates (m) of a particle's image.
-fn place(frame: &Frame, matter: &Matter, i: usize, mirror_mask: u8) -> [f64; 3] {
+fn place(frame: &Frame, matter: &Matter, i: usize, mirror_mask: MirrorMask) -> [f64; 3] {
     frame.turned(
         &matter
             .mirrors

@@ -15,7 +15,7 @@ use super::window::Window;
 use comm::Comm;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::lanes::{LANES, Lanes};
-use particles::GRAIN;
+use particles::{GRAIN, MirrorMask};
 
 /// A full voxel; four fractions of 16 bits stand in a word, so that 32 times as much matter fits.
 pub const UNIT: u16 = 1 << 11;
@@ -152,11 +152,11 @@ pub struct Voxels {
 struct Fill<'a, F> {
     voxels: &'a Voxels,
     particles: std::ops::Range<usize>,
-    mirror_masks: &'a [u8],
+    mirror_masks: &'a [MirrorMask],
     grain: &'a F,
 }
 
-impl<F: Fn(usize, u8) -> Option<Grain>> Vectorised for Fill<'_, F> {
+impl<F: Fn(usize, MirrorMask) -> Option<Grain>> Vectorised for Fill<'_, F> {
     type Output = ();
 
     #[inline(always)]
@@ -192,8 +192,8 @@ impl Voxels {
     pub fn fill(
         &self,
         count: usize,
-        mirror_masks: &[u8],
-        grain: impl Fn(usize, u8) -> Option<Grain> + Sync,
+        mirror_masks: &[MirrorMask],
+        grain: impl Fn(usize, MirrorMask) -> Option<Grain> + Sync,
     ) {
         let chunks = (0..count.div_ceil(GRAIN)).into_par_iter();
         // same bits in any order: whole numbers
@@ -292,7 +292,7 @@ mod tests {
     /// Spreads grains one after the other.
     fn spread(window: Window, grains: &[Grain]) -> Vec<u16> {
         let voxels = Voxels::new(window);
-        voxels.fill(grains.len(), &[0], |i, _| Some(grains[i]));
+        voxels.fill(grains.len(), &[MirrorMask::OWN], |i, _| Some(grains[i]));
         voxels.sum(&Comm::solo())
     }
 

@@ -19,7 +19,7 @@ impl<'a> Whole<'a> {
     /// The part and all its images: 1, 2, 4 or 8.
     #[must_use]
     pub fn copies(&self) -> u32 {
-        1 + u32::try_from(self.mirrors.masks().count()).unwrap_or(0)
+        u32::try_from(self.mirrors.masks().count()).unwrap_or(1)
     }
 
     /// A sum such as a mass or an energy.
@@ -51,8 +51,8 @@ impl<'a> Whole<'a> {
     #[must_use]
     pub fn angular_momentum(&self, part: [f64; 3], momentum: [f64; 3]) -> [f64; 3] {
         let mut all = part;
-        for mirror_mask in self.mirrors.masks() {
-            let sign = |a: usize| if mirror_mask >> a & 1 == 1 { -1.0 } else { 1.0 };
+        for mirror_mask in self.mirrors.masks().skip(1) {
+            let sign = |a: usize| if mirror_mask.has(a) { -1.0 } else { 1.0 };
             let shift = std::array::from_fn(|a| match self.mirrors.plane(a) {
                 Some(plane) if sign(a) < 0.0 => 2.0 * plane,
                 _ => 0.0,
@@ -124,7 +124,7 @@ mod tests {
             let (mut momentum, mut turn, mut centre) = ([0.0; 3], [0.0; 3], [0.0; 3]);
             let (mut part_momentum, mut part_turn) = ([0.0; 3], [0.0; 3]);
             let (mut extents, mut part_extents) = ([[9e9; 3], [-9e9; 3]], [[9e9; 3], [-9e9; 3]]);
-            for mirror_mask in std::iter::once(0).chain(mirrors.masks()) {
+            for mirror_mask in mirrors.masks() {
                 copies += 1;
                 for (m, x, v) in parts {
                     let (y, w) = (
@@ -140,7 +140,7 @@ mod tests {
                         extents[0][a] = f64::min(extents[0][a], y[a]);
                         extents[1][a] = f64::max(extents[1][a], y[a]);
                     }
-                    if mirror_mask == 0 {
+                    if mirror_mask.is_own() {
                         for a in 0..3 {
                             part_momentum[a] += m * w[a];
                             part_turn[a] += m * spin[a];

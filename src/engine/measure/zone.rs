@@ -71,8 +71,7 @@ pub fn zone(zone: &Zone, particles: &ParticleStore, matter: &Matter, comm: &Comm
     let values: usize = readings.iter().map(|reading| reading.endings().len()).sum();
     let of_chunk = |mut part: Part, chunk: usize| {
         for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(matter.len()) {
-            let mirror_masks = std::iter::once(0).chain(matter.mirrors.masks());
-            for mirror_mask in mirror_masks {
+            for mirror_mask in matter.mirrors.masks() {
                 let x = matter
                     .mirrors
                     .reflect_position(&matter.position[i], mirror_mask);

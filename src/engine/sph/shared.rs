@@ -9,7 +9,7 @@ use model::{Case, SmoothingLength};
 use numerics::kernel::Kernel;
 use numerics::lanes::LANES;
 use particles::neighbours::Lists;
-use particles::{GRAIN, Scatter, resize};
+use particles::{GRAIN, MirrorMask, Scatter, resize};
 use sums::from_mirrors::FromMirrors;
 use sums::momentum::Viscosity;
 use sums::neighbourhood::Sources;
@@ -79,7 +79,7 @@ pub(super) fn show_images<R: Send>(
     owned: usize,
     lists: &Lists,
     side: Side,
-    show: impl Fn(&Scatter<R>, usize, u8) -> R + Sync,
+    show: impl Fn(&Scatter<R>, usize, MirrorMask) -> R + Sync,
 ) {
     let sequence = lists.sequence();
     if sequence.is_alone() {
@@ -94,7 +94,7 @@ pub(super) fn show_images<R: Send>(
             for (k, image) in images.iter().enumerate() {
                 let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
                 let of_halo = slot >= owned;
-                if side.takes(of_halo) && (of_halo || mirror_mask != 0) {
+                if side.takes(of_halo) && (of_halo || !mirror_mask.is_own()) {
                     let shown = show(&records, slot, mirror_mask);
                     // SAFETY: each place is visited once, and those of own particles are not.
                     unsafe { *records.slot(LANES * eight + k) = shown };

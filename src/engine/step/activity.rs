@@ -115,8 +115,9 @@ impl Activity {
         let mirrors = Mirrors::new(&case.symmetry);
         let fixed = case.measure.gauges.iter().filter(|gauge| !gauge.moves);
         let gauges = fixed.flat_map(|gauge| {
-            let mirror_masks = std::iter::once(0).chain(mirrors.masks());
-            mirror_masks.map(|mirror_mask| mirrors.reflect_position(&gauge.at, mirror_mask))
+            mirrors
+                .masks()
+                .map(|mirror_mask| mirrors.reflect_position(&gauge.at, mirror_mask))
         });
         Self {
             gauges: gauges.collect(),

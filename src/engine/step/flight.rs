@@ -13,8 +13,7 @@ use crate::loads::{Loads, Placed};
 use comm::Comm;
 use model::{Case, RigidSurface};
 use numerics::vector::norm;
-use particles::Mirrors;
-use particles::ParticleStore;
+use particles::{MirrorMask, Mirrors, ParticleStore};
 
 /// Rounds in which particles that can meet are sought among those that could before.
 const ROUNDS: usize = 4;
@@ -56,7 +55,7 @@ struct Search {
 #[derive(Debug, Clone, Copy)]
 struct Meeting {
     bodies: [usize; 2],
-    mirror_mask: u8,
+    mirror_mask: MirrorMask,
     h: f64,
     spans: [Span; 2],
 }
@@ -115,7 +114,7 @@ impl Flight {
             }
         }
         let mut images = all;
-        for mirror_mask in inputs.mirrors.masks() {
+        for mirror_mask in inputs.mirrors.masks().skip(1) {
             images.join(&all.reflected(inputs.mirrors, mirror_mask));
         }
         let flyers = Flyers {
@@ -275,7 +274,7 @@ impl Search {
                     h: pair.h,
                     spans: [spans[a], spans[b]],
                 };
-                let all = std::iter::once(0).chain(mirrors.masks()).map(meet);
+                let all = mirrors.masks().map(meet);
                 meetings.extend(all.filter(|meeting| meeting.longest_step(mirrors) < dt));
             }
         }

@@ -201,7 +201,7 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                             }
                         } else if keeping[k] == Keeping::New
                             && slot / PART == part
-                            && mirror_mask == 0
+                            && mirror_mask.is_own()
                         {
                             // Roots may be old, which costs a look more.
                             let there = sets.root(place(0, slot));
@@ -245,11 +245,11 @@ impl<F: Fn(usize) -> Keeping + Sync> Seen<'_, F> {
                 let there = first(slot);
                 for &(here, keeping, lanes) in receivers.kept() {
                     let is_new = [keeping, their].contains(&Keeping::New);
-                    let is_inner = here as usize / PART == slot / PART && mirror_mask == 0;
+                    let is_inner = here as usize / PART == slot / PART && mirror_mask.is_own();
                     if !is_new || is_inner {
                         continue;
                     }
-                    let link = match u32::from(mirror_mask) {
+                    let link = match u32::from(mirror_mask.bits()) {
                         // Seen from both sides.
                         0 => [here.min(there), here.max(there), 0],
                         mirror_mask => [here, there, mirror_mask],

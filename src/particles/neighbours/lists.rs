@@ -306,7 +306,7 @@ impl Lists {
         } = active;
         let (owned, images) = (particles.owned(), self.sequence.images());
         let own = |image: &Image| {
-            image.mirror_mask() == 0 && image.slot() < owned && !inactive.holds(image.slot())
+            image.mirror_mask().is_own() && image.slot() < owned && !inactive.holds(image.slot())
         };
         self.order.clear();
         let all = (images.len(), GRAIN);

@@ -10,7 +10,7 @@ use super::columns::ColumnGrid;
 use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
 use super::group::Group;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
-use crate::{Image, Inactive, Scatter, resize};
+use crate::{Image, Inactive, MirrorMask, Scatter, resize};
 use numerics::lanes::{LANES, Lanes};
 use numerics::ordered::ordered;
 
@@ -89,7 +89,7 @@ impl Sequence {
         let count = active + others.len();
         let image = |k: usize| match k.checked_sub(below) {
             None => others[k],
-            Some(own) if own < active => Image::new(inactive.nth_active(own), 0),
+            Some(own) if own < active => Image::new(inactive.nth_active(own), MirrorMask::OWN),
             Some(_) => others[k - active],
         };
         self.sorter.scatter(

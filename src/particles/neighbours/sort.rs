@@ -285,7 +285,11 @@ pub(super) struct Targets<'a> {
 impl Targets<'_> {
     #[inline(always)]
     fn write(&self, index: usize, image: Image, facts: &ImageFacts, state: ImageState) {
-        let mirror = if image.mirror_mask() == 0 { 0 } else { MIRROR };
+        let mirror = if image.mirror_mask().is_own() {
+            0
+        } else {
+            MIRROR
+        };
         let halo = if image.slot() < self.owned { 0 } else { HALO };
         // SAFETY: each place belongs to one column, and one thread has that column.
         unsafe {

@@ -16,9 +16,10 @@ use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{full, load_all, read_all, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::Mirrors;
 use particles::neighbours::{Among, Cluster, Lists};
-use particles::{GRAIN, ParticleStore, Scatter, material_points, records_of, resize};
+use particles::{
+    GRAIN, MirrorMask, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
+};
 use sums::corrected::{CorrectedGradient, CorrectedRecord, Correction};
 use sums::hourglass;
 use sums::neighbourhood::Neighbourhood;
@@ -59,7 +60,7 @@ impl Corrected {
         let places = Scatter::new(&mut self.places);
         let images = lists.images().par_iter().enumerate();
         images.with_min_len(GRAIN).for_each(|(place, image)| {
-            if image.mirror_mask() == 0 && image.slot() < owned {
+            if image.mirror_mask().is_own() && image.slot() < owned {
                 #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
                 let place = place as u32;
                 // SAFETY: each particle stands at one place.
@@ -217,7 +218,7 @@ impl Gradient for CorrectedGradients<'_> {
 }
 
 /// Record of the image `mirror_mask` of a particle with this record.
-fn reflected(record: &CorrectedRecord, mirror_mask: u8) -> CorrectedRecord {
+fn reflected(record: &CorrectedRecord, mirror_mask: MirrorMask) -> CorrectedRecord {
     CorrectedRecord {
         stress: Mirrors::reflect_tensor(&record.stress, mirror_mask),
         hourglass: Mirrors::reflect_vector(&record.hourglass, mirror_mask),
