@@ -254,10 +254,10 @@ fn plates_are_judged() {
     is(&found, "dish_depth", 10.0 * D);
     assert!((number(&found, "rear_speed") - 10.0).abs() < 0.1);
     // Nor is a hole in the bottom of the dish as wide as what one sees between the faces of the start.
-    for (radius, word) in [(5.0, "perforated"), (0.6, "pinhole")] {
+    for (radius, deep, word) in [(5.0, 10.0, "perforated"), (0.6, 0.0, "pinhole")] {
         let mut pierced = plate(|[x, y, z]| {
-            let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
-            let r = (x - 0.5).hypot(y - 0.5);
+            let deep = deep * (1.0 - (x * x + y * y) / 225.0).max(0.0);
+            let r = (x - 1.0).hypot(y - 0.5);
             let out = if r < radius {
                 1.0 + 12.0 / r.max(0.5)
             } else {
@@ -284,7 +284,7 @@ fn plates_are_judged() {
         is(
             &found,
             "dish_depth",
-            10.0 * D * (1.0 - radius * radius / 225.0),
+            deep * D * (1.0 - radius * radius / 225.0),
         );
     }
     // A few particles behind it are no spall.

@@ -131,7 +131,10 @@ fn the_limiter_spares_shear() {
     let whole = heating(SphForm::Conventional, COMPRESSION, false);
     println!("heating in shear {shear:e} W/kg, in compression {compression:e}, without {whole:e}");
     assert!(shear < 0.003 * compression, "{shear} of {compression}");
-    assert!((compression / whole - 1.0).abs() < 0.05, "{compression} for {whole}");
+    assert!(
+        (compression / whole - 1.0).abs() < 0.05,
+        "{compression} for {whole}"
+    );
 }
 
 /// Cold ideal gas of γ = 5/3, which Mie–Grüneisen is with `b = γ₀` and no cold pressure.
