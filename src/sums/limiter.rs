@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn what_rattles_takes_all() {
         let shear = [0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        assert_eq!(of(&shear, [0.0, 0.5, 0.0]), 1.0);
+        assert_eq!(of(&shear, [0.0, 0.75, 0.0]), 1.0);
         assert!((of(&shear, [0.0, 0.05, 0.0]) - 0.005).abs() < 1e-15);
         assert_eq!(of(&[0.0; 9], [1e-9, 0.0, 0.0]), 1.0);
     }

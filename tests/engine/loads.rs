@@ -305,7 +305,7 @@ fn a_block_rests_on_the_floor() {
         ));
         let weight = 1000.0 * 1e-4 * 1000.0;
         let (mut mean, mut count) = (0.0, 0);
-        run_with(&mut s, 7e-3, |s| {
+        run_with(&mut s, 20e-3, |s| {
             if s.state.time > 4e-3 {
                 mean += s.state.loads[0].force[1];
                 count += 1;
