@@ -208,6 +208,22 @@ fn a_shock_through_what_cannot_fail_is_told() {
 }
 
 #[test]
+fn viscosity_that_acts_as_strength_is_told() {
+    let slow = "body.bar.velocity=[0, \"-100 m/s\"]";
+    let conventional = "sph.form=conventional";
+    let said = told(&[slow, conventional]);
+    assert_eq!(said.len(), 1, "once for a material: {said:?}");
+    assert!(
+        said[0]
+            .starts_with("`bar` meets `plate` at 100 m/s: artificial viscosity resists its flow"),
+        "{said:?}"
+    );
+    assert_told(&[slow], &[]);
+    assert_told(&[slow, conventional, "sph.alpha=0.1"], &[]);
+    assert_told(&[slow, conventional, "material.metal.strength=none"], &[]);
+}
+
+#[test]
 fn values_that_no_run_has_a_use_for_are_told() {
     assert_told(
         &["material.spare.library=\"copper\""],

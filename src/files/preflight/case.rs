@@ -73,7 +73,7 @@ pub fn thin_sections(case: &Case, messages: &mut Vec<String>) {
 }
 
 /// Thickness of the thinnest section (m), mirror images behind symmetry planes included.
-fn thickness(body: &Body, case: &Case) -> f64 {
+pub(super) fn thickness(body: &Body, case: &Case) -> f64 {
     let mut shape = body.shape.clone();
     if let model::Shape::Box { lower, upper } = &mut shape {
         for plane in &case.symmetry {

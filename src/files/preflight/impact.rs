@@ -4,7 +4,7 @@
 use super::approach::Approach;
 use material::{Eos, Material, Strength};
 use model::readable::shown;
-use model::{Body, Case};
+use model::{Body, Case, SphForm};
 
 /// A linear equation of state misses the stiffening of compressed material, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
@@ -20,11 +20,15 @@ const MIE_GRUNEISEN: f64 = 1.0;
 /// plane impacts, .3 to 5 `GPa` (Meyers 1994, *Dynamic Behavior of Materials*, chapter 16).
 const BORNE: f64 = 10e9;
 
+/// Share of the yield stress from which on the stress of artificial viscosity counts.
+const COUNTS: f64 = 0.25;
+
 /// Impacts beyond the range of an equation of state, and those whose release would tear a material that
 /// cannot fail.
 pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
     let mut warned = vec![false; case.materials.len()];
     let mut torn = vec![false; case.materials.len()];
+    let mut braked = vec![false; case.materials.len()];
     let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
     for Shock {
         pair,
@@ -47,6 +51,16 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             messages.push(format!(
                 "{meeting}, which drives `{}` to {ratio:.2} of its sound speed: {what}",
                 material.name
+            ));
+        }
+        if let Some(stress) = viscous_stress(case, body, velocity).filter(|_| !braked[index]) {
+            braked[index] = true;
+            messages.push(format!(
+                "{meeting}: artificial viscosity resists its flow by some {}, and `{}` yields at {}; \
+                 `sph.form = \"corrected\"` limits it, less `sph.alpha` or a finer spacing lowers it",
+                shown(stress, "Pa"),
+                material.name,
+                shown(material.strength.yield_stress(), "Pa")
             ));
         }
         let pressure = impedance(material) * velocity;
@@ -92,6 +106,20 @@ fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<
             velocity: closing * share,
         }
     })
+}
+
+/// Stress (Pa) of the linear viscosity in a body that flows over its thickness at a velocity (m/s), `½ α
+/// (h/Δp) ρ c u/N` (theory page "Smoothed particle hydrodynamics"), where nothing limits it and it counts beside the
+/// yield stress.
+fn viscous_stress(case: &Case, body: &Body, velocity: f64) -> Option<f64> {
+    if case.dimension == 1 || case.sph.form == SphForm::Corrected {
+        return None;
+    }
+    let material = &case.materials[body.material];
+    let across = super::case::thickness(body, case) / body.lattice.spacing;
+    let smoothing = body.smoothing_length / body.lattice.spacing;
+    let stress = 0.5 * case.sph.alpha * smoothing * impedance(material) * velocity / across;
+    (stress > COUNTS * material.strength.yield_stress()).then_some(stress)
 }
 
 /// Returns true for a solid that bears any tension.

@@ -88,6 +88,10 @@ impl Law for JohnsonCook {
         self.shear_modulus
     }
 
+    fn yield_stress(&self) -> f64 {
+        self.a
+    }
+
     /// Thermal softening, lane by lane.
     #[inline(never)]
     fn soften(&self, _point: &PointBatch, now: &mut Conditions) {

@@ -72,6 +72,11 @@ pub trait Law: Listed {
         0.0
     }
 
+    /// Yield stress of the reference state (Pa); infinite for what does not yield.
+    fn yield_stress(&self) -> f64 {
+        f64::INFINITY
+    }
+
     /// Dynamic viscosity (Pa s).
     fn viscosity(&self) -> f64 {
         0.0
@@ -188,6 +193,15 @@ macro_rules! strength_laws {
                 match self {
                     Self::None => 0.0,
                     $( Self::$law(law) => law.shear_modulus(), )+
+                }
+            }
+
+            /// Yield stress of the reference state (Pa); infinite for what does not yield.
+            #[must_use]
+            pub fn yield_stress(&self) -> f64 {
+                match self {
+                    Self::None => f64::INFINITY,
+                    $( Self::$law(law) => law.yield_stress(), )+
                 }
             }
 

@@ -100,6 +100,10 @@ impl Law for SteinbergGuinan {
         self.shear_modulus
     }
 
+    fn yield_stress(&self) -> f64 {
+        self.yield_stress
+    }
+
     /// Moduli, and the flow stress with them.
     #[inline(never)]
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {

@@ -27,6 +27,10 @@ impl Law for VonMises {
         self.shear_modulus
     }
 
+    fn yield_stress(&self) -> f64 {
+        self.yield_stress
+    }
+
     #[inline(always)]
     fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
         jaumann::deform(point, now);
