@@ -231,25 +231,24 @@ impl Shape {
                 Lip::NONE
             }
         });
-        let heights = attached
-            .ends()
-            .flatten()
-            .fold([0.0; 2], |most: [f64; 2], ends| {
+        let [front, rear, dish] = attached.ends().flatten().fold(
+            [0.0; 3],
+            |[front, rear, dish]: [f64; 3], [low, high]| {
+                let (above, below) = (high - slab.front, slab.rear - low);
                 [
-                    most[0].max(ends[1] - slab.front),
-                    most[1].max(slab.rear - ends[0]),
+                    front.max(above),
+                    rear.max(below),
+                    dish.max(below.min(-above)),
                 ]
-            });
-        let dish = attached.ends().flatten().fold(0.0_f64, |most, ends| {
-            most.max((slab.front - ends[1]).min(slab.rear - ends[0]))
-        });
+            },
+        );
         let wide = |mask: &Mask| diameter(mask.largest_part().count(), edge) >= LEAST * edge;
         Self {
             open: is_open,
             hole: width(&hole),
             middle: width(&at_middle),
             lips,
-            heights,
+            heights: [front, rear],
             dish,
             parted: wide(&attached.parted()),
             edge,
