@@ -171,12 +171,13 @@ fn print_body(case: &Case, body: &Body) -> u64 {
         }
     };
     say(&format!(
-        "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}",
+        "  {:<16} {count:>10} particles of {}, spacing {}, h {}{}{}",
         body.name,
         case.materials[body.material].name,
         range(body.lattice.spacing),
         range(body.smoothing_length),
         mass(case, body, count),
+        if body.total { ", total form" } else { "" },
     ));
     if let Some((cloud, _)) = body.cloud() {
         let names: Vec<&str> = cloud.quantities().map(Quantity::name).collect();

@@ -121,6 +121,8 @@ pub struct Body {
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,
+    /// True if its sums are over the neighbours of its initial configuration, until it tears.
+    pub total: bool,
 }
 
 impl Body {

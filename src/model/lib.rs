@@ -28,6 +28,7 @@ mod shape;
 mod sizes;
 mod solid;
 mod surface;
+mod total;
 pub mod units;
 
 pub use absorber::{Absorber, OuterFace};
@@ -59,6 +60,7 @@ pub use surface::{
     Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
     SurfaceShape, closest_on_triangle, triangulate,
 };
+pub use total::BodyForm;
 
 use material::Material;
 use readable::Readable;

@@ -76,6 +76,13 @@ pub fn times<V: Lanes>(a: &[V; 9], b: &[V; 9]) -> [V; 9] {
     all
 }
 
+/// The transposed matrix, row-major.
+#[inline(always)]
+#[must_use]
+pub fn transposed<V: Lanes>(a: &[V; 9]) -> [V; 9] {
+    [a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]]
+}
+
 /// `A T B` of a matrix T, row-major.
 #[inline(always)]
 #[must_use]

@@ -169,6 +169,8 @@ bitflags! {
         const SOFTENING = 1 << 24;
         /// Materials whose flaws grow to cracks.
         const FLAWS = 1 << 25;
+        /// Bodies of the total form.
+        const TOTAL = 1 << 26;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

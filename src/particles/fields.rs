@@ -178,7 +178,7 @@ particle_fields! {
     /// Symmetry planes that the part reaches across: a set of bits.
     part_planes: Index,                   "",       State,    MOTION,            Never,    SELF_CONTACT;
     /// Position at the start.
-    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS;
+    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL;
     /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
@@ -247,7 +247,11 @@ particle_fields! {
     /// Elastic displacement of a particle against its neighbours that no linear field explains.
     hourglass_displacement: Vector,       "m",      State,    -,              OnDemand, CORRECTED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
-    correction_norm: Scalar,              "",       Scratch,  -,              OnDemand, NORMALISED;
+    correction_norm: Scalar,              "",       Scratch,  -,              OnDemand, NORMALISED | TOTAL;
+    /// Deformation gradient of a body of the total form, row i column j is the derivative of position i along j at the start.
+    deformation_gradient: Tensor,         "",       Scratch,  STRESS,         OnDemand, TOTAL;
+    /// Modulus of the hourglass control of the total form.
+    hourglass_modulus: Scalar,            "Pa",     Scratch,  STRESS,         OnDemand, TOTAL;
     /// Velocity gradient at a stress point at the predicted velocities.
     predicted_gradient: Tensor,           "1/s",    Scratch,  -,              Never,    STRESS_POINTS;
     /// How steep the gradients at a stress point are: 1.4 in a cubic lattice at h = 1.3 Δp.

@@ -29,6 +29,7 @@ pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) ->
         angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
+        total: false,
     }
 }
 

@@ -22,6 +22,7 @@ pub use forces::CorrectedRecord;
 
 use super::limiter::limiter;
 use super::neighbourhood::Neighbourhood;
+pub(crate) use motion::spin;
 use motion::{PlainSums, motion};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
@@ -63,7 +64,7 @@ impl Correction {
 
 /// Adds the moments of pairs at `r = x_i − x_j` with `∇W = factor r`; gives V ∇W.
 #[inline(always)]
-fn add_moment<V: Lanes>(moment: &mut [V; 6], r: &[V; 3], factor: V) -> [V; 3] {
+pub(crate) fn add_moment<V: Lanes>(moment: &mut [V; 6], r: &[V; 3], factor: V) -> [V; 3] {
     let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
     for a in 0..3 {
         moment[a] = r[a].neg_mul_add(steep[a], moment[a]);

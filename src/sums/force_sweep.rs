@@ -8,6 +8,7 @@ use super::normalised::{NormalisedRecord, stress_power};
 use super::scale::Scale;
 use super::step::Side;
 use super::terms::{PairTerms, with_terms};
+use super::total::TotalRecord;
 use crate::with_scale;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::PairScale;
@@ -32,6 +33,8 @@ pub struct ForceSweep<'a, R> {
     pub terms: PairTerms<'a>,
     /// Side of the clusters that are swept.
     pub side: Side,
+    /// By group: whether other lists than these have its sums.
+    pub elsewhere: &'a [bool],
     /// Its target.
     pub target: ForceTarget<'a>,
 }
@@ -61,7 +64,7 @@ macro_rules! swept {
         )+
     };
 }
-swept!(StressRecord, CorrectedRecord, NormalisedRecord);
+swept!(StressRecord, CorrectedRecord, NormalisedRecord, TotalRecord);
 
 /// Target of the second sweep.
 pub struct ForceTarget<'a> {
@@ -150,6 +153,7 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
             viscosity,
             terms,
             side,
+            elsewhere,
             target,
             ..
         } = self.all;
@@ -159,6 +163,9 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
         } = self.from_mirrors;
         let chunk = self.chunk.iter();
         for (cluster, neighbours, among) in chunk.filter(|(_, _, among)| side.takes(among.halo)) {
+            if elsewhere[cluster.group] {
+                continue;
+            }
             let free = |&j: &u32| stresses[j as usize].is_free();
             if among.resting || !among.moving && neighbours.iter().all(free) {
                 target.store::<R, TERMS>(images, cluster, &Forces::NONE);

@@ -22,3 +22,4 @@ pub mod scale;
 pub mod step;
 pub mod stress_points;
 pub mod terms;
+pub mod total;

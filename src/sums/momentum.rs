@@ -105,7 +105,7 @@ pub(crate) struct ViscousPair<V> {
 
 /// `r² + 0.01 h²` (m²) of pairs.
 #[inline(always)]
-fn soft<V: Lanes>(square: V, h: V) -> V {
+pub(crate) fn soft<V: Lanes>(square: V, h: V) -> V {
     h.mul(h).mul(V::splat(0.01)).add(square)
 }
 

@@ -33,6 +33,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
+        total: false,
     }
 }
 

@@ -31,6 +31,7 @@ pub fn case() -> Case {
         angular_velocity: Vec3::zeros(),
         rigid: None,
         smoothing_length: 1.3 * spacing,
+        total: false,
     };
     Case {
         title: "Sphere on plate, ⌀ 0.6 mm".to_owned(),

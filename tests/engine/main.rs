@@ -34,6 +34,7 @@ mod step;
 mod stress_points;
 mod surfaces;
 mod terms;
+mod total;
 mod touch;
 mod virtual_ranks;
 mod world;

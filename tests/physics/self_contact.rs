@@ -16,7 +16,7 @@ strength.elastic = { shear_modulus = "2 MPa" }
 /// A block of 8 mm height between two places (mm).
 fn block(name: &str, from: f64, to: f64) -> String {
     format!(
-        "[[body]]\nname = \"{name}\"\nmaterial = \"soft\"\n\
+        "[[body]]\nname = \"{name}\"\nmaterial = \"soft\"\nform = \"updated\"\n\
          shape.box = {{ lower = [\"{from} mm\", 0], upper = [\"{to} mm\", \"8 mm\"] }}\n"
     )
 }

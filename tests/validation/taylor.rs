@@ -11,16 +11,17 @@ fn radius(place: &[f64; 3]) -> f64 {
     (place[0] * place[0] + place[1] * place[1]).sqrt()
 }
 
-/// The rim of the foot: particles of the lowest layer that begin beyond nine tenths of the radius,
+/// The rim of the foot: particles of the lowest layer that begin beyond 85 % of the radius,
 /// with that beginning (m), sorted by identity.
 fn rim(s: &Simulation) -> Vec<(u64, f64)> {
     let particles = &s.particles;
     let z = |i: usize| particles.position[i][2];
     let lowest = (0..particles.owned()).map(z).fold(f64::INFINITY, f64::min);
-    let layer = (0..particles.owned()).filter(|&i| z(i) < lowest + 1e-6);
+    let layer =
+        (0..particles.owned()).filter(|&i| z(i) < lowest + 0.5 * s.case.bodies[0].lattice.spacing);
     let mut rim: Vec<(u64, f64)> = layer
         .map(|i| (particles.id[i], radius(&particles.position[i])))
-        .filter(|(_, r)| *r > 0.9 * RADIUS)
+        .filter(|(_, r)| *r > 0.85 * RADIUS)
         .collect();
     rim.sort_unstable_by_key(|(id, _)| *id);
     rim

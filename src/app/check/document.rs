@@ -74,6 +74,7 @@ fn of_body(case: &Case, body: &Body) -> (Value, u64) {
         "smoothing_length": sizes.map(|size| size * body.smoothing_length),
         "mass": mass_of(case, body, count),
         "rigid": body.rigid.is_some(),
+        "total": body.total,
     });
     (entry, count)
 }

@@ -231,6 +231,12 @@ pub struct RunState {
     /// Memory of the measures, in their order.
     #[serde(default)]
     pub remembered: Vec<Remembered>,
+    /// By body: whether it has the total form; empty in states of programs without it.
+    #[serde(default)]
+    pub total: Vec<bool>,
+    /// Factor by which initial neighbours of the total form may be farther apart than they were; zero without.
+    #[serde(default)]
+    pub stretch: f64,
     /// Largest values over the run.
     pub worst: Worst,
 }

@@ -7,11 +7,13 @@ mod momentum_sweep;
 mod normalised;
 mod stress_points;
 mod stresses;
+mod total;
 
 pub use conventional::Conventional;
 pub use corrected::Corrected;
 pub use normalised::Normalised;
 pub use stress_points::StressPoints;
+pub use total::TotalBodies;
 
 use super::shared::Sums;
 use super::signal::SignalSpeed;

@@ -39,6 +39,10 @@ pub(super) struct Updated<'a> {
     pub after: &'a PointBatch,
     /// Elastic shear modulus of the reference state (Pa).
     pub shear_modulus: f64,
+    /// Yield stress of the reference state (Pa), infinite without one.
+    pub yield_stress: f64,
+    /// True if tension has a limit.
+    pub limits_tension: bool,
     /// Bit k: lane k is one of them.
     pub lanes: u8,
     /// Their particles.
@@ -61,6 +65,11 @@ impl Updated<'_> {
 
 /// Output of a formulation of eight particles after their update.
 pub(super) trait Show {
+    /// Sets densities (kg/m³) of eight particles after a step, from their places among the images, where these do not
+    /// follow from velocity gradients.
+    #[inline(always)]
+    fn set_density(&self, _density: &mut [f64; LANES], _indices: &[u32; LANES]) {}
+
     /// Shows points.
     ///
     /// # Safety
@@ -198,6 +207,7 @@ impl<'a> MaterialUpdate<'a> {
             let strain = half * (xx[k] + yy[k] + zz[k]);
             before.density[k] *= (1.0 - strain) / (1.0 + strain);
         }
+        show.set_density(&mut before.density, &cluster.receivers);
         let material = |k: usize| self.material_of_body[self.points.body[slot[k]] as usize];
         // Empty lanes cost as much as others.
         let work = neighbours * LANES / cluster.lanes;
@@ -229,6 +239,8 @@ impl<'a> MaterialUpdate<'a> {
                 before: &before,
                 after: &after,
                 shear_modulus: self.materials[own].strength.shear_modulus(),
+                yield_stress: self.materials[own].strength.yield_stress(),
+                limits_tension: self.materials[own].failure.spall.is_some(),
                 lanes,
                 particles: slot,
                 indices: &cluster.receivers,

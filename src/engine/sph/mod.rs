@@ -6,6 +6,7 @@
 //! outside the support adds an exact zero.
 
 mod formulation;
+mod hourglass_update;
 mod material_update;
 mod phase;
 mod recording;

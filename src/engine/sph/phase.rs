@@ -2,19 +2,22 @@
 
 use rayon::prelude::*;
 
-use super::formulation::{Conventional, Corrected, Formulation, Normalised, StressPoints};
+use super::formulation::{
+    Conventional, Corrected, Formulation, Normalised, StressPoints, TotalBodies,
+};
 use super::rest::Resting;
 use super::shared::Sums;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::term_records;
-use crate::domain::Payload;
+use crate::domain::{InitialLayout, Payload};
 use crate::loads::Loads;
+use comm::Comm;
 use model::{Case, SphForm};
 use numerics::kernel::Kernel;
 use particles::MirrorForce;
-use particles::ParticleStore;
-use particles::neighbours::Lists;
+use particles::neighbours::{Groups, Lists};
+use particles::{Active, HaloImages, ParticleStore};
 use sums::corrected::CorrectedRecord;
 use sums::momentum::StressRecord;
 use sums::normalised::NormalisedRecord;
@@ -78,12 +81,12 @@ const CHUNKS_OF_A_TASK: usize = 16;
 impl Sph {
     /// Of a case.
     #[must_use]
-    pub fn new(case: &Case) -> Self {
+    pub fn new(case: &Case, groups: &Groups, layout: &InitialLayout) -> Self {
         Self {
             smoothing: Smoothing::new(case),
             form: match case.sph.form {
                 SphForm::Conventional => Form::Conventional(Conventional::default()),
-                SphForm::Corrected => Form::Corrected(Corrected::new(case)),
+                SphForm::Corrected => Form::Corrected(Corrected::new(case, groups, layout)),
                 SphForm::Normalised => Form::Normalised(Normalised::default()),
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },
@@ -101,6 +104,83 @@ impl Sph {
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
         term_records::bytes_of_records(&case.sph) + corrected
+    }
+
+    /// Bodies of the total form, if the case has any.
+    #[must_use]
+    pub fn total(&self) -> Option<&TotalBodies> {
+        match &self.form {
+            Form::Corrected(form) => form.total.as_ref(),
+            Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => None,
+        }
+    }
+
+    fn total_mut(&mut self) -> Option<&mut TotalBodies> {
+        match &mut self.form {
+            Form::Corrected(form) => form.total.as_mut(),
+            Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => None,
+        }
+    }
+
+    /// Tells the lists of all bodies which groups have their sums elsewhere, before they are made. `spared` lists name no
+    /// neighbours of these.
+    pub(crate) fn mark(&self, lists: &mut Lists, spared: bool) {
+        if let Some(total) = self.total() {
+            lists.set_elsewhere(total.groups(), spared);
+        }
+    }
+
+    /// Lists the neighbours of the initial configuration, of bodies of the total form.
+    pub(crate) fn list_initial(&mut self, active: Active, halo: HaloImages) {
+        if let Some(total) = self.total_mut() {
+            total.list(active, halo);
+        }
+    }
+
+    /// Finds bodies of the total form that meet themselves, after the sums of a step.
+    pub(crate) fn find_folds(&self, particles: &ParticleStore, lists: &Lists) {
+        if let Some(total) = self.total() {
+            total.find_folds(particles, lists);
+        }
+    }
+
+    /// Gives bodies of the total form to the corrected form for good.
+    pub fn release(&mut self, leaves: impl Fn(usize) -> bool) {
+        if let Some(total) = self.total_mut() {
+            total.release(leaves);
+        }
+    }
+
+    /// Writes which bodies have the total form now; nothing if the case has none.
+    pub fn write_forms(&self, forms: &mut Vec<bool>) {
+        if let Some(total) = self.total() {
+            forms.clear();
+            forms.extend((0..self.sums.material_of_body.len()).map(|body| total.holds(body)));
+        }
+    }
+
+    /// Takes up the forms of bodies, and the factor of their reach, of a saved state.
+    pub fn restore(&mut self, total: &[bool], stretch: f64) {
+        self.release(|body| !total.get(body).is_some_and(|&total| total));
+        self.set_stretch(stretch.max(1.0));
+    }
+
+    /// Finishes the sums of a step: bodies leave the total form, and the others reach as far as their neighbours may be.
+    /// Collective.
+    pub fn finish(&mut self, comm: &Comm) -> Option<f64> {
+        let total = self.total_mut()?;
+        let factor = total.finish(comm);
+        self.set_stretch(factor);
+        Some(factor)
+    }
+
+    /// Sets how much farther particles of the total form reach than by their lengths.
+    pub fn set_stretch(&mut self, factor: f64) {
+        for body in 0..self.sums.material_of_body.len() {
+            let held = self.total().is_some_and(|total| total.holds(body));
+            self.smoothing
+                .set_stretch(body, if held { factor } else { 1.0 });
+        }
     }
 
     /// Memory for so many images that is free until [`Self::rates`].
@@ -165,7 +245,9 @@ impl Sph {
     pub fn forces_of_mirrors(
         &self,
     ) -> impl ParallelIterator<Item = impl Iterator<Item = &MirrorForce>> {
+        let of_total = self.total().map_or(&[][..], TotalBodies::from_mirrors);
         let tasks = self.sums.from_mirrors.par_chunks(CHUNKS_OF_A_TASK);
+        let tasks = tasks.chain(of_total.par_chunks(CHUNKS_OF_A_TASK));
         tasks.map(|chunks| chunks.iter().flat_map(|chunk| &chunk.forces))
     }
 

@@ -13,6 +13,8 @@ pub struct Smoothing {
     /// 1/ρ of each body at the start (m³/kg).
     inverse_density: Vec<f64>,
     sizes: Sizes,
+    /// By body: factor of the reach of its particles.
+    stretch: Vec<f64>,
     /// The longest length at the start (m).
     longest: f64,
 }
@@ -28,6 +30,7 @@ impl Smoothing {
             reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             inverse_density: case.bodies.iter().map(inverse_density).collect(),
             sizes: Sizes::new(case),
+            stretch: vec![1.0; case.bodies.len()],
             longest: case
                 .bodies
                 .iter()
@@ -68,7 +71,12 @@ impl Smoothing {
     #[inline]
     #[must_use]
     pub fn reach_of(&self, body: usize, mass: f64, length: f64) -> f64 {
-        length.max(self.at_start(body, mass))
+        length.max(self.at_start(body, mass)) * self.stretch[body]
+    }
+
+    /// Sets how much farther the particles of a body reach than by their lengths.
+    pub fn set_stretch(&mut self, body: usize, factor: f64) {
+        self.stretch[body] = factor;
     }
 
     /// The length (m) of a particle of `body` with a mass (kg) at the start.

@@ -7,6 +7,7 @@ use crate::sph::{StressForces, stress};
 use comm::Comm;
 use numerics::kernel::Kernel;
 use numerics::vector::{dot, minus, norm};
+use numerics::virial::Virial;
 use particles::Mirrors;
 use particles::neighbours::{CHUNKS_AT_ONCE, Lists};
 use particles::{HaloPhase, ParticleStore};
@@ -30,10 +31,16 @@ pub fn carried_in(simulation: &Simulation) -> Vec<Carried> {
     let (particles, lists) = (&simulation.particles, &simulation.search.lists);
     let carried = (simulation.contact).carried(particles, lists, simulation.state.last_dt);
     let forces = StressForces::new(&simulation.case, particles, lists, &simulation.sph);
+    let total = total_virials(simulation, |i| {
+        carried.binary_search_by_key(&i, |(i, _)| *i).is_ok()
+    });
     of_receivers(lists, |i, place, neighbours| {
         let at = carried.binary_search_by_key(&i, |(i, _)| *i).ok()?;
         let carried = &carried[at].1;
-        let mut virial = forces.virial(place, neighbours);
+        let mut virial = match total.binary_search_by_key(&i, |(i, _)| *i) {
+            Ok(at) => total[at].1,
+            Err(_) => forces.virial(place, neighbours),
+        };
         virial.join(&carried.virial);
         let volume = particles.mass[i] / particles.density[i];
         let press = norm(&carried.press);
@@ -43,6 +50,23 @@ pub fn carried_in(simulation: &Simulation) -> Vec<Carried> {
             normal: carried.press.map(|f| f / press),
         })
     })
+}
+
+/// Virials of stress of chosen particles whose bodies have the total form, by particle.
+fn total_virials(
+    simulation: &Simulation,
+    chosen: impl Fn(usize) -> bool + Sync,
+) -> Vec<(usize, Virial)> {
+    let Some(total) = simulation.sph.total() else {
+        return Vec::new();
+    };
+    let kernel = Kernel::new(simulation.case.dimension);
+    let lengths = &simulation.particles.smoothing_length;
+    let mut all = of_receivers(total.lists(), |i, place, neighbours| {
+        chosen(i).then(|| (i, total.virial(&kernel, lengths, place, neighbours)))
+    });
+    all.par_sort_unstable_by_key(|(i, _)| *i);
+    all
 }
 
 /// Writes into `contact_stress` the traction across each particle in contact beyond that of its own

@@ -21,6 +21,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
         (Owner::SOFTENING, case.fails_with("failure_onset")),
+        (Owner::TOTAL, case.bodies.iter().any(|body| body.total)),
         (Owner::FLAWS, case.fails_with("flaws")),
         (Owner::YIELD, case.may_yield()),
         (Owner::CARRIERS, case.measure.marks_particles()),

@@ -40,6 +40,14 @@ pub(super) struct ActivityInputs<'a> {
     pub criteria: CriteriaInputs<'a>,
 }
 
+/// Steps between two looks for bodies of the total form that meet themselves.
+const FOLDS_EVERY: u64 = 10;
+
+/// True if bodies of the total form that meet themselves are looked for at a step.
+pub(super) fn finds_folds(step: u64) -> bool {
+    step.is_multiple_of(FOLDS_EVERY)
+}
+
 impl Search {
     pub(super) fn new(case: &Case, table: &ContactTable, layout: &InitialLayout) -> Self {
         Self {
@@ -97,6 +105,9 @@ impl Search {
         };
         let images = particles.owned() + halo.others().len();
         let foreign = contact.table.has_pairs().then_some(&contact.table.foreign);
+        // The bodies' own lists serve contact, and the search for folds.
+        let links = foreign.is_some() || contact.connectivity.is_active();
+        sph.mark(lists, !(links || finds_folds(step)));
         let (scratch, resting) = sph.before_rates(images);
         let connectivity = &mut contact.connectivity;
         connectivity.sample(particles, |i| resting.holds(particles, i));
@@ -113,6 +124,7 @@ impl Search {
             lists.build_foreign(particles, table);
         }
         lists.join();
+        sph.list_initial(active, halo.images());
     }
 
     /// Labels the pieces of bodies that no chain of neighbours connects. Collective.

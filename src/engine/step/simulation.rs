@@ -8,7 +8,7 @@ use super::flight::FlightInputs;
 use super::integrate;
 use super::removal::{Removal, RemovalInputs};
 use super::restored::{Beginning, require_own};
-use super::search::{ActivityInputs, ListInputs, Search};
+use super::search::{ActivityInputs, ListInputs, Search, finds_folds};
 use super::setup;
 use super::space::Space;
 use super::timers::{Phase, Timers};
@@ -102,12 +102,14 @@ impl Simulation {
         let Self {
             case,
             particles,
+            state,
             space,
             sph,
             contact,
             removal,
             ..
         } = &mut simulation;
+        sph.restore(&state.total, state.stretch);
         removal.restore(comm, particles, unused_fields(case, &contact.table));
         space.partition.begin(comm, particles, |particles, i| {
             sph.smoothing.reach(particles, i)
@@ -138,7 +140,7 @@ impl Simulation {
                 halo: Halo::new(Mirrors::new(&case.symmetry)),
             },
             search: Search::new(&case, table, layout),
-            sph: Sph::new(&case),
+            sph: Sph::new(&case, &contact.table.groups, layout),
             loads: Loads::new(&case),
             accounts,
             contact,
@@ -379,6 +381,13 @@ impl Simulation {
         let planes = sph.forces_of_mirrors();
         contact.sums.add_plane_forces(planes, &particles.position);
         timers.lap(Phase::ContactForces);
+        if finds_folds(state.step) {
+            sph.find_folds(particles, lists);
+        }
+        if let Some(stretch) = sph.finish(comm) {
+            state.stretch = stretch;
+            sph.write_forms(&mut state.total);
+        }
     }
 
     /// Second half kick of a step `dt` (s), zero at the start of a case. Returns this rank's
@@ -532,6 +541,7 @@ impl Simulation {
             particles,
             state,
             search,
+            sph,
             loads,
             removal,
             ..
@@ -545,6 +555,9 @@ impl Simulation {
             bodies: case.bodies.len(),
         };
         let count = removal.take_out(comm, why, inputs)?;
+        // Sums over initial neighbours miss what has gone.
+        let gone = |of: &[Removed], body: usize| of.get(body).is_some_and(|of| of.particles > 0);
+        sph.release(|body| gone(&state.removed, body) || gone(&state.departed, body));
         if why == Leave::Failed {
             // Predictions of their neighbours may be spoilt.
             let owned = particles.owned();

@@ -12,7 +12,7 @@ use super::quantity::{
     Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature, Time,
     Velocity,
 };
-use model::{Axis, SphForm};
+use model::{Axis, BodyForm, SphForm};
 
 #[macro_use]
 mod declare;
@@ -143,6 +143,9 @@ tables! {
         temperature: Option<Spanned<ProfileParams<Temperature>>>;
         /// Initial equivalent plastic strain.
         plastic_strain: Option<Spanned<ProfileParams<Strain>>> => "none";
+        /// Configuration whose neighbours its sums are over: the initial one until it tears (total), that of each step
+        /// (updated), or the initial one of what yields and nothing meets faster than a tenth of its sound speed (auto).
+        form: Option<Spanned<BodyForm>> = BodyForm::Auto;
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
         /// True if the body is rigid and keeps its velocity, whatever acts on it.

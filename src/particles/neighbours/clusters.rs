@@ -248,6 +248,8 @@ pub struct ClusterLists {
     used: usize,
     /// Number of groups that the bodies form, if there are stress points.
     body_groups: Option<usize>,
+    /// By group: whether its particles are no receivers; empty where all are.
+    left_out: Vec<bool>,
 }
 
 /// Images whose clusters one task handles: many enough that the tasks cost nothing, few enough
@@ -265,6 +267,12 @@ impl ClusterLists {
             body_groups,
             ..Self::default()
         }
+    }
+
+    /// Particles of these groups are no receivers, from the next call of [`Self::build`] on.
+    pub(super) fn leave_out(&mut self, groups: &[bool]) {
+        self.left_out.resize(groups.len(), false);
+        self.left_out.copy_from_slice(groups);
     }
 
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
@@ -337,6 +345,9 @@ impl ClusterLists {
     fn lay_out(&mut self, sequence: &Sequence) {
         self.used = 0;
         for group in 0..sequence.groups() {
+            if self.left_out.get(group).is_some_and(|&left_out| left_out) {
+                continue;
+            }
             let Range { start, end } = sequence.group(group);
             for first in (start..end).step_by(PLACES_PER_CHUNK) {
                 if self.used == self.chunks.len() {

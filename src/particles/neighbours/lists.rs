@@ -27,6 +27,10 @@ pub struct Lists {
     pub spare_quiescent: bool,
     /// True if the store is to be put in order.
     pub is_order_due: bool,
+    /// By group: whether other lists than these have its sums.
+    pub elsewhere: Vec<bool>,
+    /// Of lists of the initial configuration: specific volumes at the start (m^d/kg), by body.
+    of_start: Option<Vec<f64>>,
     sequence: Sequence,
     motion: Vec<MotionRecord>,
     clusters: ClusterLists,
@@ -67,6 +71,8 @@ impl Lists {
         Self {
             spare_quiescent: true,
             is_order_due: true,
+            elsewhere: vec![false; groups.count()],
+            of_start: None,
             common_velocity: (0..groups.count()).map(common_velocity).collect(),
             sequence: Sequence::new(group_grids(case, &groups, boxes, longest), uniform),
             motion: Vec::new(),
@@ -81,6 +87,41 @@ impl Lists {
             lengths,
             groups,
         }
+    }
+
+    /// The same of the initial configuration: of positions and volumes at the start, given the specific volumes of bodies
+    /// (m^d/kg).
+    #[must_use]
+    pub fn of_start(mut self, specific_volume: Vec<f64>) -> Self {
+        self.of_start = Some(specific_volume);
+        self
+    }
+
+    /// Sets which groups have their sums by other lists; `spared` lists name no neighbours of these.
+    pub fn set_elsewhere(&mut self, groups: impl Iterator<Item = bool>, spared: bool) {
+        let own = self.elsewhere.iter_mut().zip(&mut self.lengths);
+        for (((elsewhere, lengths), &rigid), is_elsewhere) in
+            own.zip(&self.groups.rigid).zip(groups)
+        {
+            *elsewhere = is_elsewhere;
+            lengths.rigid = rigid || is_elsewhere && spared;
+        }
+    }
+
+    /// Calls `refresh` with each image of the last search, the record of its motion and a value of its place.
+    pub fn refresh<T: Send>(
+        &mut self,
+        values: &mut [T],
+        refresh: impl Fn(&mut T, &mut MotionRecord, Image) + Sync,
+    ) {
+        let records = self.motion.par_iter_mut().zip(self.sequence.images());
+        let all = values.par_iter_mut().zip(records).with_min_len(GRAIN);
+        all.for_each(|(value, (record, image))| refresh(value, record, *image));
+    }
+
+    /// Particles of these groups are no receivers, from the next search on.
+    pub fn leave_out(&mut self, groups: &[bool]) {
+        self.clusters.leave_out(groups);
     }
 
     /// The images in canonical order.
@@ -210,10 +251,15 @@ impl Lists {
         resize(&mut self.motion, active.count() + others.len());
         let motion = Scatter::new(&mut self.motion);
         let group_of = |slot: usize| group_of(groups, particles, slot);
+        let of_start = self.of_start.as_deref();
+        let positions = match of_start {
+            None => &particles.position,
+            Some(_) => &particles.reference_position,
+        };
         let facts = |image: Image| {
             let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
             ImageFacts {
-                position: mirrors.reflect_position(&particles.position[slot], mirror_mask),
+                position: mirrors.reflect_position(&positions[slot], mirror_mask),
                 id: particles.id[slot],
                 group: group_of(slot),
                 smoothing_length: particles.smoothing_length[slot],
@@ -229,12 +275,17 @@ impl Lists {
             |index, image| {
                 let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
                 let record = MotionRecord {
-                    position: mirrors.reflect_position(&particles.position[slot], mirror_mask),
+                    position: mirrors.reflect_position(&positions[slot], mirror_mask),
                     velocity: Mirrors::reflect_vector(
                         &particles.predicted_velocity[slot],
                         mirror_mask,
                     ),
-                    volume: particles.mass[slot] / particles.predicted_density[slot],
+                    volume: match of_start {
+                        None => particles.mass[slot] / particles.predicted_density[slot],
+                        Some(volumes) => {
+                            particles.mass[slot] * volumes[particles.body[slot] as usize]
+                        }
+                    },
                     mass: particles.mass[slot],
                 };
                 // SAFETY: each place is emitted once.

@@ -49,19 +49,19 @@ pub(super) struct Motion<V> {
     pub(super) rest: [V; 3],
 }
 
-/// The spin W of a neighbourhood (1/s) whose strain rate is D: `W M + M W` is twice the antisymmetric
-/// part of `L₀ − D M`, so that the angular velocity is `(tr M I − M)⁻¹` times its axial vector, as an
+/// The spin W of a neighbourhood (1/s) whose strain rate is D and whose plain gradient is `L₀`: `W M + M W` is twice the
+/// antisymmetric part of `L₀ − D M`, so that the angular velocity is `(tr M I − M)⁻¹` times its axial vector, as an
 /// inertia to an angular momentum.
 #[inline(always)]
-fn spin<V: Lanes>(strain: &[V; 9], plain: &PlainSums<V>) -> [V; 9] {
-    let explained = times(strain, &full(&plain.moment));
-    let left = |a: usize| plain.gradient[a].sub(explained[a]);
+pub(crate) fn spin<V: Lanes>(strain: &[V; 9], plain: &[V; 9], moment: &Symmetric<V>) -> [V; 9] {
+    let explained = times(strain, &full(moment));
+    let left = |a: usize| plain[a].sub(explained[a]);
     let axial = [
         left(7).sub(left(5)),
         left(2).sub(left(6)),
         left(3).sub(left(1)),
     ];
-    let [xx, yy, zz, xy, xz, yz] = plain.moment;
+    let [xx, yy, zz, xy, xz, yz] = *moment;
     let zero = V::splat(0.0);
     let minus = |c: V| zero.sub(c);
     let inertia = [
@@ -111,7 +111,7 @@ pub(super) fn motion<V: Lanes>(
         mean(2, 6),
         mean(5, 7),
     ]);
-    let spin = spin(&strain, plain);
+    let spin = spin(&strain, &plain.gradient, &plain.moment);
     let turned = times(&spin, &full(&plain.moment));
     let mut stretch = plain.gradient;
     for c in 0..9 {

@@ -6,27 +6,28 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use crate::domain::Payload;
+use super::total::{Shown, TotalBodies};
+use crate::domain::{InitialLayout, Payload};
+use crate::sph::hourglass_update::HourglassUpdate;
 use crate::sph::material_update::{Show, Updated};
 use crate::sph::shared::{Sums, scratch_of, show_images};
 use crate::sph::signal::{SignalSpeed, Signals};
-use material::{FAILED, NEGLIGIBLE, PointBatch};
+use material::PointBatch;
 use model::Case;
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
-use numerics::lane_matrix::{full, load_all, read_all, store_all};
+use numerics::lane_matrix::{full, read_all, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
-use particles::neighbours::{Among, Cluster, Lists};
+use particles::neighbours::{Among, Cluster, Groups, Lists};
 use particles::{
     GRAIN, MirrorMask, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
 };
 use sums::corrected::{CorrectedGradient, CorrectedRecord, Correction};
-use sums::hourglass;
 use sums::neighbourhood::Neighbourhood;
 use sums::step::{Side, Step};
 
 /// The corrected formulation.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Corrected {
     records: Vec<CorrectedRecord>,
     /// Places of the records of this rank's particles.
@@ -35,14 +36,17 @@ pub struct Corrected {
     received: Vec<CorrectedRecord>,
     /// Stiffness ξ of the hourglass control.
     hourglass: f64,
+    /// Bodies of the total form.
+    pub(in crate::sph) total: Option<TotalBodies>,
 }
 
 impl Corrected {
     /// Of a case.
     #[must_use]
-    pub fn new(case: &Case) -> Self {
+    pub fn new(case: &Case, groups: &Groups, layout: &InitialLayout) -> Self {
         Self {
             hourglass: case.sph.hourglass,
+            total: TotalBodies::new(case, groups, layout),
             ..Self::default()
         }
     }
@@ -80,14 +84,24 @@ impl Formulation for Corrected {
     ) {
         let gradient = CorrectedGradients {
             dimension: sums.dimension,
-            dt: step.dt,
-            hourglass: self.hourglass,
-            displacement: Scatter::new(&mut particles.hourglass_displacement),
+            hourglass: HourglassUpdate {
+                dt: step.dt,
+                stiffness: self.hourglass,
+                displacement: Scatter::new(&mut particles.hourglass_displacement),
+            },
             records: Scatter::new(&mut self.records),
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
         self.find_places(particles.owned(), lists);
+        if let Some(total) = &mut self.total {
+            let shown = Shown {
+                records: &mut self.records,
+                places: &self.places,
+                received: &[],
+            };
+            total.rates(sums, particles, step, self.hourglass, shown);
+        }
     }
 
     fn forces(
@@ -114,6 +128,14 @@ impl Formulation for Corrected {
         );
         sums.terms.show(particles, lists, side);
         accelerate(sums, &self.records, particles, lists, side);
+        if let Some(total) = &mut self.total {
+            let shown = Shown {
+                records: &mut self.records,
+                places: &self.places,
+                received: &self.received,
+            };
+            total.forces(sums, particles, &shown, side);
+        }
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {
@@ -127,6 +149,7 @@ impl Formulation for Corrected {
     fn memory(&self) -> usize {
         (self.records.capacity() + self.received.capacity()) * size_of::<CorrectedRecord>()
             + 4 * self.places.capacity()
+            + self.total.as_ref().map_or(0, TotalBodies::memory)
     }
 }
 
@@ -148,17 +171,18 @@ impl Payload for Corrected {
 
 impl SignalSpeed for Corrected {
     #[inline(always)]
-    fn speed(_: &Signals, _: usize, plain: f64) -> f64 {
-        plain
+    fn speed(signals: &Signals, i: usize, plain: f64) -> f64 {
+        signals
+            .correction_norm
+            .get(i)
+            .map_or(plain, |norm| norm * plain)
     }
 }
 
 /// Corrected gradients, and where stresses between corrections go.
 struct CorrectedGradients<'a> {
     dimension: usize,
-    dt: f64,
-    hourglass: f64,
-    displacement: Scatter<'a, [f64; 3]>,
+    hourglass: HourglassUpdate<'a>,
     records: Scatter<'a, CorrectedRecord>,
 }
 
@@ -210,7 +234,7 @@ impl Gradient for CorrectedGradients<'_> {
             *self.records.slot(place) = CorrectedRecord::new(
                 &[0.0; 9],
                 &[0.0; 3],
-                self.hourglass,
+                self.hourglass.stiffness,
                 [density, sound_speed, 0.0],
             );
         }
@@ -257,7 +281,9 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
         let stress = store_all(&stress);
         if points.shear_modulus > 0.0 {
             // SAFETY: by the contract of this function.
-            unsafe { self.bend::<V>(points, &deviator) };
+            unsafe {
+                target.hourglass.advance::<V>(points, &deviator, &self.rest);
+            }
         }
         points.each(|k, i, index| {
             let mut own = [0.0; 9];
@@ -267,51 +293,11 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
             let state = [after.density[k], after.sound_speed[k], self.limiter.0[k]];
             // SAFETY: by the contract of this function.
             unsafe {
-                let displacement = target.displacement.slot(i);
+                let displacement = target.hourglass.displacement.slot(i);
+                let stiffness = target.hourglass.stiffness;
                 *target.records.slot(index) =
-                    CorrectedRecord::new(&own, displacement, target.hourglass, state);
+                    CorrectedRecord::new(&own, displacement, stiffness, state);
             }
-        });
-    }
-}
-
-impl<S: PairScale> ShowCorrected<'_, S> {
-    /// Advances hourglass displacements.
-    ///
-    /// # Safety
-    /// No other thread may read or write those of these particles.
-    #[inline(always)]
-    unsafe fn bend<V: Lanes>(&self, points: &Updated, deviator: &[V; 6]) {
-        let (target, before, after) = (self.target, points.before, points.after);
-        let mut old = [[0.0; LANES]; 3];
-        let mut intact = [1.0; LANES];
-        for k in 0..LANES {
-            // SAFETY: by the contract of this function.
-            let own = unsafe { *target.displacement.slot(points.particles[k]) };
-            for a in 0..3 {
-                old[a][k] = own[a];
-            }
-            let slow = |v: &F64x8| v.0[k].abs() < NEGLIGIBLE * after.sound_speed[k];
-            let still = || after.velocity_gradient.iter().all(|l| l[k] == 0.0);
-            let rests = own == [0.0; 3] && self.rest.iter().all(slow) && still();
-            if after.damage[k] >= FAILED || rests {
-                intact[k] = 0.0;
-            }
-        }
-        let plastic = V::read(&after.plastic_strain).sub(V::read(&before.plastic_strain));
-        let flow = plastic.mul(V::splat(3.0 * points.shear_modulus));
-        let kept = hourglass::kept(deviator, flow).mul(V::read(&intact));
-        let new = hourglass::advance(
-            &read_all(&old),
-            &load_all(&self.rest),
-            &read_all(&after.velocity_gradient),
-            V::splat(target.dt),
-        );
-        let new = [new[0].mul(kept), new[1].mul(kept), new[2].mul(kept)];
-        let new: [F64x8; 3] = store_all::<V, 3>(&new);
-        points.each(|k, i, _| {
-            // SAFETY: by the contract of this function.
-            unsafe { *target.displacement.slot(i) = [new[0].0[k], new[1].0[k], new[2].0[k]] };
         });
     }
 }

@@ -54,7 +54,8 @@ pub(super) fn strain<G: Gradient>(
     let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
     with_scale!(scale, scale => chunks.for_each(|chunk| {
         let motion = sources(lists, scale);
-        instructions.run(GradientChunk { chunk, motion, gradient, update });
+        let elsewhere = &lists.elsewhere;
+        instructions.run(GradientChunk { chunk, motion, gradient, update, elsewhere });
     }));
 }
 
@@ -64,6 +65,8 @@ struct GradientChunk<'a, S, G> {
     motion: Sources<'a, S>,
     gradient: &'a G,
     update: &'a MaterialUpdate<'a>,
+    /// By group: whether other lists have its sums.
+    elsewhere: &'a [bool],
 }
 
 impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
@@ -72,6 +75,9 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
     #[inline(always)]
     fn run<V: Lanes>(self) {
         for (cluster, neighbours, among) in self.chunk.iter() {
+            if self.elsewhere[cluster.group] {
+                continue;
+            }
             let update = self.update;
             if among.resting {
                 // SAFETY: the places belong to this cluster alone.

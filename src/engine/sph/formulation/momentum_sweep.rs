@@ -18,12 +18,24 @@ pub(super) fn accelerate<R: Swept>(
     lists: &Lists,
     side: Side,
 ) {
+    let mut from_mirrors = std::mem::take(&mut sums.from_mirrors);
+    accelerate_with(sums, (stresses, &mut from_mirrors), particles, lists, side);
+    sums.from_mirrors = from_mirrors;
+}
+
+/// The same, where forces of mirror images go elsewhere.
+pub(super) fn accelerate_with<R: Swept>(
+    sums: &Sums,
+    (stresses, from_mirrors): (&[R], &mut Vec<FromMirrors>),
+    particles: &mut ParticleStore,
+    lists: &Lists,
+    side: Side,
+) {
     let chunks = lists.chunks();
     let Sums {
         scale,
         viscosity,
         terms,
-        from_mirrors,
         ..
     } = sums;
     from_mirrors.resize_with(chunks.len(), FromMirrors::default);
@@ -36,6 +48,7 @@ pub(super) fn accelerate<R: Swept>(
         viscosity: *viscosity,
         terms: terms.of_sums(),
         side,
+        elsewhere: &lists.elsewhere,
         target: ForceTarget {
             mass: &particles.mass,
             acceleration: Scatter::new(&mut particles.acceleration),

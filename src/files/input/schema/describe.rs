@@ -12,7 +12,7 @@ use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
 use material::{AfterSpall, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
 use model::{
-    Axis, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
+    Axis, BodyForm, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
     PotentialRange, Precision, SphForm,
 };
 
@@ -259,6 +259,7 @@ described_words!(
     Precision,
     RateForm,
     SphForm,
+    BodyForm,
 );
 
 /// Types of one schema.

@@ -107,6 +107,7 @@ impl Reader<'_> {
         let mut body = Body {
             name: name.clone(),
             smoothing_length: self.smoothing * lattice.spacing,
+            total: false,
             shape,
             material,
             lattice,

@@ -30,6 +30,7 @@ mod solids;
 mod strength;
 mod stress_points;
 mod surfaces;
+mod total;
 mod touch;
 
 use std::ops::Range;
@@ -117,6 +118,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
+    total::resolve(case, &params.body)?;
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
     check_moduli(case, &params.body)?;

@@ -1,0 +1,81 @@
+//! The configuration whose neighbours the sums of a body are over.
+
+use super::{Case, ContactMode, Quantity, SmoothingLength, SphForm};
+use serde::Deserialize;
+
+/// Speed of bodies against each other, over the longitudinal sound speed, up to which the total form is the default: what
+/// meets faster tears at once.
+const SLOW: f64 = 0.1;
+
+/// Choice of the configuration whose neighbours the sums of a body are over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BodyForm {
+    /// The initial one of what yields and nothing meets faster than a tenth of its sound speed.
+    #[default]
+    Auto,
+    /// The initial one, until the body tears.
+    Total,
+    /// That of each step.
+    Updated,
+}
+
+impl Case {
+    /// Obstacle to the total form of a body, in words; none if there is none.
+    #[must_use]
+    pub fn total_obstacle(&self, body: usize) -> Option<&'static str> {
+        let (sph, own) = (&self.sph, &self.bodies[body]);
+        let mut others = (0..self.bodies.len()).filter(|&other| other != body);
+        let terms = sph.artificial_stress > 0.0 || sph.xsph > 0.0 || sph.conduction > 0.0;
+        let obstacles = [
+            (own.rigid.is_some(), "it is rigid"),
+            (
+                sph.form != SphForm::Corrected,
+                "`sph.form` is another than \"corrected\"",
+            ),
+            (
+                self.materials[own.material].strength.shear_modulus() <= 0.0,
+                "its material is a fluid",
+            ),
+            (
+                sph.smoothing_length != SmoothingLength::Constant,
+                "the smoothing length is variable",
+            ),
+            (
+                terms || sph.balsara,
+                "artificial stress, conduction, XSPH and the Balsara switch need the neighbours of each step",
+            ),
+            (
+                others.any(|b| matches!(self.contact_between(body, b), ContactMode::Kernel)),
+                "`kernel` contact needs the neighbours of each step",
+            ),
+            (
+                self.loads.absorbers.iter().any(|zone| zone.body == body),
+                "an absorbing zone relaxes it",
+            ),
+            (
+                own.holds(Quantity::Density),
+                "its file gives each particle a density",
+            ),
+        ];
+        let first = obstacles.into_iter().find(|(is_there, _)| *is_there);
+        first.map(|(_, why)| why)
+    }
+
+    /// True if a body flows, slowly: its material yields, and nothing meets the body faster than a
+    /// tenth of its longitudinal sound speed, as far as the case says, and it does not deform faster either.
+    #[must_use]
+    pub fn flows_slowly(&self, body: usize) -> bool {
+        let own = &self.bodies[body];
+        let others = 0..self.bodies.len();
+        let closing = others.map(|other| self.closing_speed(body, other));
+        let outside = if self.loads.surfaces.is_empty() && self.symmetry.is_empty() {
+            0.0
+        } else {
+            own.velocity.norm()
+        };
+        let speed = closing.fold(outside + own.speed_spread(), f64::max);
+        let material = &self.materials[own.material];
+        material.strength.yields() && speed <= SLOW * material.longitudinal_speed()
+    }
+}
