@@ -174,8 +174,8 @@ fn what_meets_itself_leaves() {
     let text = "dimension = 2\nspacing = \"1 mm\"\n[run]\nend_time = \"60 us\"\n".to_owned()
         + METAL
         + "[[body]]\nname = \"clip\"\nmaterial = \"metal\"\n\
-           shape.prism = { corners = [[0, 0], [\"30 mm\", 0], [\"30 mm\", \"4 mm\"], [\"4 mm\", \"4 mm\"], \
-           [\"4 mm\", \"12 mm\"], [\"30 mm\", \"12 mm\"], [\"30 mm\", \"16 mm\"], [0, \"16 mm\"]] }\n\
+           shape.difference = [{ box = { lower = [0, 0], upper = [\"30 mm\", \"16 mm\"] } }, \
+           { box = { lower = [\"4 mm\", \"4 mm\"], upper = [\"31 mm\", \"12 mm\"] } }]\n\
            velocity = [0, \"-200 m/s * (y - 8 mm) / (8 mm) * x / (30 mm)\"]\n";
     let mut s = start(inline(&text));
     assert!(s.case.bodies[0].total);

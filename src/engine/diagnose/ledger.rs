@@ -149,6 +149,16 @@ impl Totals {
     }
 }
 
+/// A body that has left the total form.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Torn {
+    /// Index of the body.
+    pub body: usize,
+    /// When it left it (s).
+    pub time: f64,
+}
+
 /// The scalar state of a run; equal on all ranks, saved with each checkpoint.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -234,6 +244,9 @@ pub struct RunState {
     /// By body: whether it has the total form; empty in states of programs without it.
     #[serde(default)]
     pub total: Vec<bool>,
+    /// Bodies that have left the total form, in turn.
+    #[serde(default)]
+    pub torn: Vec<Torn>,
     /// Factor by which initial neighbours of the total form may be farther apart than they were; zero without.
     #[serde(default)]
     pub stretch: f64,
@@ -247,6 +260,18 @@ fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 impl RunState {
+    /// Notes which bodies have the total form at a time (s), which ones have left it, and the factor by which neighbours may
+    /// be farther apart.
+    pub(crate) fn book_forms(&mut self, time: f64, stretch: f64, is_total: impl Fn(usize) -> bool) {
+        self.stretch = stretch;
+        for (body, total) in self.total.iter_mut().enumerate() {
+            if *total && !is_total(body) {
+                *total = false;
+                self.torn.push(Torn { body, time });
+            }
+        }
+    }
+
     /// The step to do now and what limits it: the smallest candidate, unless the case ends before,
     /// at `end` (s).
     pub(crate) fn next_step(&self, end: f64) -> (f64, Reason) {

@@ -151,12 +151,10 @@ impl Sph {
         }
     }
 
-    /// Writes which bodies have the total form now; nothing if the case has none.
-    pub fn write_forms(&self, forms: &mut Vec<bool>) {
-        if let Some(total) = self.total() {
-            forms.clear();
-            forms.extend((0..self.sums.material_of_body.len()).map(|body| total.holds(body)));
-        }
+    /// True if a body has the total form.
+    #[must_use]
+    pub fn is_total(&self, body: usize) -> bool {
+        self.total().is_some_and(|total| total.holds(body))
     }
 
     /// Takes up the forms of bodies, and the factor of their reach, of a saved state.

@@ -32,7 +32,7 @@ pub(super) fn require_own(
 ) -> Result<(), SetupError> {
     let (own, bodies) = (beginning.state, beginning.case.bodies.len());
     let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
-    let checks: [Check; 8] = [
+    let checks: [Check; 9] = [
         ("it has other pairs of bodies or loads", &|| {
             ledgers(state) != ledgers(own)
         }),
@@ -45,6 +45,10 @@ pub(super) fn require_own(
         ("it has other gauges or witness planes", &|| {
             let carried = beginning.measures.gauges.count_carried();
             [state.gauge_carriers.len(), state.passed.len()] != [carried, own.passed.len()]
+        }),
+        ("it has other bodies of the total form", &|| {
+            let torn = state.torn.iter().any(|torn| torn.body >= bodies);
+            torn || ![0, bodies].contains(&state.total.len())
         }),
         ("its times are none", &|| {
             !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)

@@ -131,6 +131,7 @@ impl Simulation {
                 pairs: vec![PairState::default(); table.active_pairs().len()],
                 loads: vec![LoadState::default(); case.load_names().count()],
                 passed: vec![Passed::default(); accounts.measures.witnesses.ledgers()],
+                total: case.bodies.iter().map(|body| body.total).collect(),
                 ..RunState::default()
             },
             timers: Timers::default(),
@@ -385,8 +386,7 @@ impl Simulation {
             sph.find_folds(particles, lists);
         }
         if let Some(stretch) = sph.finish(comm) {
-            state.stretch = stretch;
-            sph.write_forms(&mut state.total);
+            state.book_forms(step.time, stretch, |body| sph.is_total(body));
         }
     }
 

@@ -41,7 +41,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     // Steps since the start of the process, if no particle was removed.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
     let each = |sent: u64| sent as f64 / (steps.max(1.0) * comm.size() as f64);
-    json!({
+    let mut summary = json!({
         "title": simulation.case.title,
         "version": VERSION,
         "commit": commit(),
@@ -83,7 +83,18 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "failed_mass": failed,
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
-    })
+    });
+    summary["left_total_form"] = json!(left_total_form(simulation));
+    summary
+}
+
+/// Bodies that have left the total form, with the time (s), if any had it.
+fn left_total_form(simulation: &Simulation) -> Option<serde_json::Value> {
+    let bodies = &simulation.case.bodies;
+    let torn = simulation.state.torn.iter();
+    let left = torn.map(|torn| json!({ "body": bodies[torn.body].name, "time": torn.time }));
+    let any = bodies.iter().any(|body| body.total);
+    any.then(|| left.collect())
 }
 
 /// Number of removed particles.

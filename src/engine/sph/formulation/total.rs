@@ -295,7 +295,7 @@ impl TotalBodies {
     }
 
     /// Finds bodies that meet themselves: two particles that are no initial neighbours are closer than two may be, while
-    /// either of them expects the other far away. `lists` are those of all bodies.
+    /// both expect the other far away. `lists` are those of all bodies.
     pub fn find_folds(&self, particles: &ParticleStore, lists: &Lists) {
         let (images, motion) = (lists.images(), lists.motion());
         lists.chunks().par_iter().for_each(|chunk| {
@@ -320,7 +320,7 @@ impl TotalBodies {
         });
     }
 
-    /// True if two images were no neighbours, and the deformation of either would leave them apart.
+    /// True if two images were no neighbours, and the deformation of both would leave them apart.
     fn are_strangers(&self, particles: &ParticleStore, a: Image, b: Image) -> bool {
         let start = |image: Image| {
             let own = &particles.reference_position[image.slot()];
@@ -334,7 +334,7 @@ impl TotalBodies {
             let row = |a: usize| dot(&[0, 1, 2].map(|b| deformation[3 * a + b]), &apart);
             norm(&[row(0), row(1), row(2)]) > h
         };
-        norm(&apart) > h && (expects(a) || expects(b))
+        norm(&apart) > h && expects(a) && expects(b)
     }
 
     /// Sorted images and their neighbours in the initial configuration.
