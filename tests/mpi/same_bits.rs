@@ -173,6 +173,26 @@ fn every_contact_mode_variable_h_and_options() {
     });
 }
 
+/// A rod on an anvil, whose sums are over the neighbours that it began with.
+#[test]
+fn a_body_of_the_total_form() {
+    let (_keep, at) = folder();
+    let case = [
+        "inputs/taylor-bar",
+        "--set",
+        "spacing=0.8mm",
+        "--set",
+        "run.end_time=12us",
+    ];
+    let (reference, three, legs) = (at("reference"), at("three"), at("legs"));
+    run(1, 2, &case, &[], &reference);
+    run(3, 1, &case, &[], &three);
+    assert_same(&reference, &three, "three ranks");
+    assert_same_in_legs(&case, &[2, 1, 3], &["3us", "7us"], &reference, &legs);
+    let summary = std::fs::read_to_string(reference.join("summary.json")).expect("a summary");
+    assert!(summary.contains("\"left_total_form\": []"), "{summary}");
+}
+
 #[test]
 fn stop_and_restart_on_other_ranks() {
     let (_keep, at) = folder();

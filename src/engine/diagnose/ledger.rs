@@ -157,6 +157,40 @@ pub struct Torn {
     pub body: usize,
     /// When it left it (s).
     pub time: f64,
+    /// Why.
+    pub tear: Tear,
+}
+
+/// Reason for which a body leaves the total form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Tear {
+    /// Two of its particles meet that began far from each other.
+    Fold,
+    /// A particle expands that limits tension.
+    Void,
+    /// A particle has been turned inside out.
+    Inversion,
+    /// A particle has failed.
+    Failure,
+    /// A particle has been taken out.
+    Removal,
+}
+
+impl Tear {
+    /// All reasons, by their words.
+    pub(crate) const ALL: [Self; 5] = [
+        Self::Fold,
+        Self::Void,
+        Self::Inversion,
+        Self::Failure,
+        Self::Removal,
+    ];
+
+    /// Number of a reason in messages, from 1 on.
+    pub(crate) fn word(self) -> u64 {
+        self as u64 + 1
+    }
 }
 
 /// The scalar state of a run; equal on all ranks, saved with each checkpoint.
@@ -262,12 +296,17 @@ fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 impl RunState {
     /// Notes which bodies have the total form at a time (s), which ones have left it, and the factor by which neighbours may
     /// be farther apart.
-    pub(crate) fn book_forms(&mut self, time: f64, stretch: f64, is_total: impl Fn(usize) -> bool) {
+    pub(crate) fn book_forms(
+        &mut self,
+        time: f64,
+        stretch: f64,
+        tear: impl Fn(usize) -> Option<Tear>,
+    ) {
         self.stretch = stretch;
         for (body, total) in self.total.iter_mut().enumerate() {
-            if *total && !is_total(body) {
+            if let Some(tear) = tear(body).filter(|_| *total) {
                 *total = false;
-                self.torn.push(Torn { body, time });
+                self.torn.push(Torn { body, time, tear });
             }
         }
     }

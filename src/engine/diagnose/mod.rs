@@ -12,7 +12,7 @@ mod taken_out;
 mod totals;
 
 pub(crate) use instability::{fastest, is_explained};
-pub use ledger::{LoadState, NearestPair, PairState, Passed, RunState, Torn, Totals, Worst};
+pub use ledger::{LoadState, NearestPair, PairState, Passed, RunState, Tear, Torn, Totals, Worst};
 pub use limits::NumericalFailure;
 pub(crate) use limits::{Limits, Moved};
 pub(crate) use post_mortem::PAST_STEPS;

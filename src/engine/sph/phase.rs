@@ -10,6 +10,7 @@ use super::shared::Sums;
 use super::signal::Signals;
 use super::smoothing::Smoothing;
 use super::term_records;
+use crate::diagnose::Tear;
 use crate::domain::{InitialLayout, Payload};
 use crate::loads::Loads;
 use comm::Comm;
@@ -149,6 +150,12 @@ impl Sph {
         if let Some(total) = self.total_mut() {
             total.release(leaves);
         }
+    }
+
+    /// Why a body has left the total form, as far as this process knows.
+    #[must_use]
+    pub fn tear(&self, body: usize) -> Option<Tear> {
+        self.total().and_then(|total| total.tear(body))
     }
 
     /// True if a body has the total form.

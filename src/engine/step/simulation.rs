@@ -386,7 +386,7 @@ impl Simulation {
             sph.find_folds(particles, lists);
         }
         if let Some(stretch) = sph.finish(comm) {
-            state.book_forms(step.time, stretch, |body| sph.is_total(body));
+            state.book_forms(step.time, stretch, |body| sph.tear(body));
         }
     }
 

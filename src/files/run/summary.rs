@@ -88,11 +88,13 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     summary
 }
 
-/// Bodies that have left the total form, with the time (s), if any had it.
+/// Bodies that have left the total form, with the time (s) and the reason, if any had it.
 fn left_total_form(simulation: &Simulation) -> Option<serde_json::Value> {
     let bodies = &simulation.case.bodies;
     let torn = simulation.state.torn.iter();
-    let left = torn.map(|torn| json!({ "body": bodies[torn.body].name, "time": torn.time }));
+    let left = torn.map(
+        |torn| json!({ "body": bodies[torn.body].name, "time": torn.time, "reason": torn.tear }),
+    );
     let any = bodies.iter().any(|body| body.total);
     any.then(|| left.collect())
 }

@@ -1,11 +1,12 @@
 //! Bodies of the total form: sums over the neighbours of their initial configuration (theory page "Total form").
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate_with;
+use crate::diagnose::Tear;
 use crate::domain::InitialLayout;
 use crate::sph::material_update::{Show, Updated};
 use crate::sph::shared::{Sums, scratch_of, show_images};
@@ -37,6 +38,10 @@ const LEAST_CHANGE: f64 = 1e-12;
 /// Expansion at which what limits tension has torn.
 const TORN: f64 = 1.1;
 
+/// Distance over twice the smoothing length beyond which particles of a body are strangers. Nearer ones roll over each
+/// other at the rim of a foot, and their neighbours keep them apart.
+const FAR: f64 = 3.0;
+
 /// Factor of distances that a step does not exceed.
 const ROOM: f64 = 1.1;
 
@@ -58,8 +63,10 @@ pub struct TotalBodies {
     group_of_body: Vec<usize>,
     /// By group: whether its bodies are of another form.
     others: Vec<bool>,
-    /// By group: whether it leaves the form after this step.
-    leaving: Vec<AtomicBool>,
+    /// By group: why it leaves the form after this step, as [`Tear`] numbers that; zero if it does not.
+    leaving: Vec<AtomicU64>,
+    /// By group: why it has left the form.
+    tears: Vec<Option<Tear>>,
     /// Square of the largest distance of initial neighbours over that of their smoothing length, as bits.
     farthest: AtomicU64,
     /// Words of messages.
@@ -108,7 +115,8 @@ impl TotalBodies {
             from_mirrors: Vec::new(),
             mirrors: Mirrors::new(&case.symmetry),
             group_of_body: groups.of_body.clone(),
-            leaving: others.iter().map(|_| AtomicBool::new(false)).collect(),
+            leaving: others.iter().map(|_| AtomicU64::new(0)).collect(),
+            tears: vec![None; others.len()],
             others,
             farthest: AtomicU64::new(0),
             words: Vec::new(),
@@ -126,10 +134,19 @@ impl TotalBodies {
         self.others.iter().map(|other| !other)
     }
 
-    /// Gives bodies to the corrected form for good.
+    /// Why a body has left the form, as far as this process knows.
+    #[must_use]
+    pub fn tear(&self, body: usize) -> Option<Tear> {
+        self.tears[self.group_of_body[body]]
+    }
+
+    /// Gives bodies some of whose particles have been taken out to the corrected form for good.
     pub fn release(&mut self, leaves: impl Fn(usize) -> bool) {
         for (body, &group) in self.group_of_body.iter().enumerate() {
-            self.others[group] |= leaves(body);
+            if leaves(body) && !self.others[group] {
+                self.others[group] = true;
+                self.tears[group] = Some(Tear::Removal);
+            }
         }
     }
 
@@ -279,22 +296,21 @@ impl TotalBodies {
     pub fn finish(&mut self, comm: &Comm) -> f64 {
         let words = &mut self.words;
         words.clear();
-        words.extend(
-            self.leaving
-                .iter()
-                .map(|leaves| u64::from(leaves.load(Relaxed))),
-        );
+        words.extend(self.leaving.iter().map(|leaves| leaves.load(Relaxed)));
         words.push(self.farthest.load(Relaxed));
         comm.max_u64(words);
-        for ((other, leaves), &word) in self.others.iter_mut().zip(&self.leaving).zip(&*words) {
-            *other |= word != 0;
-            leaves.store(false, Relaxed);
+        for (group, &word) in words[..self.others.len()].iter().enumerate() {
+            self.leaving[group].store(0, Relaxed);
+            if let Some(tear) = Tear::ALL.iter().find(|tear| tear.word() == word) {
+                self.others[group] = true;
+                self.tears[group] = Some(*tear);
+            }
         }
         let square = words.last().map_or(0.0, |&bits| f64::from_bits(bits));
         (0.5 * square.sqrt()).max(1.0) * ROOM
     }
 
-    /// Finds bodies that meet themselves: two particles that are no initial neighbours are closer than two may be, while
+    /// Finds bodies that meet themselves: two particles that began far from each other are closer than two may be, while
     /// both expect the other far away. `lists` are those of all bodies.
     pub fn find_folds(&self, particles: &ParticleStore, lists: &Lists) {
         let (images, motion) = (lists.images(), lists.motion());
@@ -314,13 +330,13 @@ impl TotalBodies {
                     })
                 };
                 if cluster.valid().iter().any(meets) {
-                    self.leaving[cluster.group].store(true, Relaxed);
+                    self.leaving[cluster.group].fetch_max(Tear::Fold.word(), Relaxed);
                 }
             }
         });
     }
 
-    /// True if two images were no neighbours, and the deformation of both would leave them apart.
+    /// True if two images began far from each other, and the deformation of both would leave them apart.
     fn are_strangers(&self, particles: &ParticleStore, a: Image, b: Image) -> bool {
         let start = |image: Image| {
             let own = &particles.reference_position[image.slot()];
@@ -328,13 +344,14 @@ impl TotalBodies {
         };
         let apart = minus(&start(a), &start(b));
         let h = particles.smoothing_length[a.slot()] + particles.smoothing_length[b.slot()];
+        let far = FAR * h;
         let expects = |image: Image| {
             let own = &particles.deformation_gradient[image.slot()];
             let deformation = Mirrors::reflect_tensor(own, image.mirror_mask());
             let row = |a: usize| dot(&[0, 1, 2].map(|b| deformation[3 * a + b]), &apart);
-            norm(&[row(0), row(1), row(2)]) > h
+            norm(&[row(0), row(1), row(2)]) > far
         };
-        norm(&apart) > h && expects(a) && expects(b)
+        norm(&apart) > far && expects(a) && expects(b)
     }
 
     /// Sorted images and their neighbours in the initial configuration.
@@ -406,7 +423,7 @@ struct TotalGradients<'a> {
     places: &'a [u32],
     predicted_density: &'a [f64],
     norm: Scatter<'a, f64>,
-    leaving: &'a [AtomicBool],
+    leaving: &'a [AtomicU64],
     farthest: &'a AtomicU64,
 }
 
@@ -470,7 +487,7 @@ impl Show for ShowTotal<'_> {
             sigma[4 * a] = sigma[4 * a].sub(pressure);
         }
         let stress: [F64x8; 9] = store_all::<V, 9>(&total.apply(&sigma));
-        let (mut leaves, mut farthest) = (false, 0.0_f64);
+        let (mut leaves, mut farthest) = (0, 0.0_f64);
         points.each(|k, i, index| {
             let motion = &target.lists.motion()[index];
             // The volume now, over that at the start.
@@ -481,9 +498,18 @@ impl Show for ShowTotal<'_> {
             }
             let state = [after.density[k], after.sound_speed[k], total.limiter.0[k]];
             let expands = total.determinant.0[k];
-            leaves |= after.damage[k] >= FAILED
-                || expands <= LEAST_DETERMINANT
-                || points.limits_tension && expands > TORN;
+            let torn = [
+                (Tear::Failure, after.damage[k] >= FAILED),
+                (Tear::Inversion, expands <= LEAST_DETERMINANT),
+                (Tear::Void, points.limits_tension && expands > TORN),
+            ];
+            for (tear, is_so) in torn {
+                leaves = if is_so {
+                    tear.word().max(leaves)
+                } else {
+                    leaves
+                };
+            }
             farthest = farthest.max(total.farthest.0[k]);
             // Signals of the linear viscosity are those of its limiter.
             let alpha = 0.6 * target.alpha;
@@ -518,8 +544,8 @@ impl Show for ShowTotal<'_> {
                 *target.norm.slot(i) = (total.squeeze.0[k] * speed).max(1.0);
             }
         });
-        if leaves {
-            target.leaving[self.group].store(true, Relaxed);
+        if leaves > 0 {
+            target.leaving[self.group].fetch_max(leaves, Relaxed);
         }
         // Bits of positive numbers are in their order.
         target.farthest.fetch_max(farthest.to_bits(), Relaxed);
