@@ -67,14 +67,14 @@ fn the_runs_of_a_sweep_stand_beside_an_equation() {
     sweep.args(["sweep", &quarter_impact(), "--set", "spacing=0.1mm"]);
     sweep.args(["--set", "run.end_time=0.6us", "--threads", "1"]);
     sweep.args(["--set", "body.sphere.velocity=[0, 0, \"-0.5 km/s\"]"]);
-    sweep.args(["--vary", "body.sphere.shape.sphere.radius=0.15, 0.5 mm"]);
+    sweep.args(["--vary", "body.sphere.shape.sphere.radius=0.12, 0.5 mm"]);
     end(sweep.arg("--out").arg(&out)).with_code(0);
     let mut limit = command(WHIPPLE);
     limit.args(["limit", "crater", "--wall", "0.5mm", "--brinell", "105"]);
     limit.args(["--sound-speed", "5.33km/s", "--speeds", "0.4..1 km/s"]);
     let ended = end(limit.arg("--sweep").arg(&out).args(["--format", "svg"])).with_code(0);
     let lines: Vec<&str> = ended.stdout.lines().collect();
-    for (diameter, verdict) in [("0.300 mm", "held    held"), ("1.000 mm", "failed  failed")] {
+    for (diameter, verdict) in [("0.240 mm", "held    held"), ("1.000 mm", "failed  failed")] {
         let found = lines
             .iter()
             .find(|line| line.contains(diameter) && line.contains(verdict));

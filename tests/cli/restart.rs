@@ -213,7 +213,7 @@ balance_every = 0
 
 [trouble]
 policy = "remove"
-density_max = 1.18
+density_max = 1.16
 
 [output]
 snapshot_every = "0.5 us"

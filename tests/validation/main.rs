@@ -23,3 +23,4 @@ mod ranks;
 mod sliding;
 mod taylor;
 mod time_step;
+mod total;
