@@ -111,14 +111,14 @@ impl Sph {
     #[must_use]
     pub fn total(&self) -> Option<&TotalBodies> {
         match &self.form {
-            Form::Corrected(form) => form.total.as_ref(),
+            Form::Corrected(form) => form.total.as_deref(),
             Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => None,
         }
     }
 
     fn total_mut(&mut self) -> Option<&mut TotalBodies> {
         match &mut self.form {
-            Form::Corrected(form) => form.total.as_mut(),
+            Form::Corrected(form) => form.total.as_deref_mut(),
             Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => None,
         }
     }
@@ -250,7 +250,7 @@ impl Sph {
     pub fn forces_of_mirrors(
         &self,
     ) -> impl ParallelIterator<Item = impl Iterator<Item = &MirrorForce>> {
-        let of_total = self.total().map_or(&[][..], TotalBodies::from_mirrors);
+        let of_total = self.total().map_or(&[][..], TotalBodies::mirror_forces);
         let tasks = self.sums.from_mirrors.par_chunks(CHUNKS_OF_A_TASK);
         let tasks = tasks.chain(of_total.par_chunks(CHUNKS_OF_A_TASK));
         tasks.map(|chunks| chunks.iter().flat_map(|chunk| &chunk.forces))

@@ -37,7 +37,7 @@ pub struct Corrected {
     /// Stiffness ξ of the hourglass control.
     hourglass: f64,
     /// Bodies of the total form.
-    pub(in crate::sph) total: Option<TotalBodies>,
+    pub(in crate::sph) total: Option<Box<TotalBodies>>,
 }
 
 impl Corrected {
@@ -46,7 +46,7 @@ impl Corrected {
     pub fn new(case: &Case, groups: &Groups, layout: &InitialLayout) -> Self {
         Self {
             hourglass: case.sph.hourglass,
-            total: TotalBodies::new(case, groups, layout),
+            total: TotalBodies::new(case, groups, layout).map(Box::new),
             ..Self::default()
         }
     }
@@ -95,12 +95,12 @@ impl Formulation for Corrected {
         strain(&gradient, sums, points, lists, step);
         self.find_places(particles.owned(), lists);
         if let Some(total) = &mut self.total {
-            let shown = Shown {
+            let mut shown = Shown {
                 records: &mut self.records,
                 places: &self.places,
                 received: &[],
             };
-            total.rates(sums, particles, step, self.hourglass, shown);
+            total.rates(sums, particles, step, self.hourglass, &mut shown);
         }
     }
 
@@ -149,7 +149,7 @@ impl Formulation for Corrected {
     fn memory(&self) -> usize {
         (self.records.capacity() + self.received.capacity()) * size_of::<CorrectedRecord>()
             + 4 * self.places.capacity()
-            + self.total.as_ref().map_or(0, TotalBodies::memory)
+            + self.total.as_ref().map_or(0, |total| total.memory())
     }
 }
 

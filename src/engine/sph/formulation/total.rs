@@ -225,7 +225,7 @@ impl TotalBodies {
         particles: &mut ParticleStore,
         step: &Step,
         hourglass: f64,
-        shown: Shown,
+        shown: &mut Shown,
     ) {
         resize(&mut self.records, self.lists.images().len());
         particles.correction_norm.fill(1.0);
@@ -287,7 +287,7 @@ impl TotalBodies {
 
     /// Forces of images behind symmetry planes in the last second sweep, by chunks.
     #[must_use]
-    pub fn from_mirrors(&self) -> &[FromMirrors] {
+    pub fn mirror_forces(&self) -> &[FromMirrors] {
         &self.from_mirrors
     }
 
@@ -471,7 +471,8 @@ impl Show for ShowTotal<'_> {
             let expansion = self.total.determinant.0[k].max(LEAST_DETERMINANT);
             let exact = motion.mass / (motion.volume * expansion);
             // Rates leave what rests as it is, to the bit.
-            if !((density[k] / exact - 1.0).abs() < LEAST_CHANGE) {
+            let is_rounding = (density[k] / exact - 1.0).abs() < LEAST_CHANGE;
+            if !is_rounding {
                 density[k] = exact;
             }
         }
