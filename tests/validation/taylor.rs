@@ -38,11 +38,11 @@ fn copper_rod_ends_as_in_published_codes() {
     let rim = rim(&s);
     run_to(&mut s, 80e-6);
     let particles = &s.particles;
-    let top = particles.position[..particles.owned()]
-        .iter()
-        .map(|x| x[2])
-        .fold(0.0, f64::max);
-    let length = top + 0.5 * s.case.bodies[0].lattice.spacing;
+    let heights = particles.position[..particles.owned()].iter().map(|x| x[2]);
+    let top = heights.clone().fold(0.0, f64::max);
+    let bottom = heights.fold(f64::INFINITY, f64::min);
+    // The layer on the anvil is squeezed to a fifteenth.
+    let length = top - bottom + 0.5 * s.case.bodies[0].lattice.spacing;
     let stretch = (0..particles.owned()).filter_map(|i| {
         let k = rim
             .binary_search_by_key(&particles.id[i], |(id, _)| *id)
