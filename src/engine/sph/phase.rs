@@ -182,9 +182,8 @@ impl Sph {
     /// Sets how much farther particles of the total form reach than by their lengths.
     pub fn set_stretch(&mut self, factor: f64) {
         for body in 0..self.sums.material_of_body.len() {
-            let held = self.total().is_some_and(|total| total.holds(body));
-            self.smoothing
-                .set_stretch(body, if held { factor } else { 1.0 });
+            let factor = if self.is_total(body) { factor } else { 1.0 };
+            self.smoothing.set_stretch(body, factor);
         }
     }
 

@@ -134,6 +134,11 @@ impl TotalBodies {
         self.others.iter().map(|other| !other)
     }
 
+    /// True if no body is of this form any more.
+    fn is_empty(&self) -> bool {
+        self.others.iter().all(|&other| other)
+    }
+
     /// Why a body has left the form, as far as this process knows.
     #[must_use]
     pub fn tear(&self, body: usize) -> Option<Tear> {
@@ -153,6 +158,10 @@ impl TotalBodies {
     /// Lists the neighbours of the initial configuration, in the order of initial positions, where particles or images have
     /// changed.
     pub fn list(&mut self, active: Active, halo: HaloImages) {
+        if self.is_empty() {
+            self.from_mirrors.clear();
+            return;
+        }
         let (particles, mirrors) = (active.particles, halo.mirrors);
         let is_listed = self.is_listed(active, halo);
         if !is_listed {
@@ -227,8 +236,11 @@ impl TotalBodies {
         hourglass: f64,
         shown: &mut Shown,
     ) {
-        resize(&mut self.records, self.lists.images().len());
         particles.correction_norm.fill(1.0);
+        if self.is_empty() {
+            return;
+        }
+        resize(&mut self.records, self.lists.images().len());
         self.farthest.store(0, Relaxed);
         let gradient = TotalGradients {
             dimension: sums.dimension,
@@ -258,6 +270,9 @@ impl TotalBodies {
         shown: &Shown,
         side: Side,
     ) {
+        if self.is_empty() {
+            return;
+        }
         let (owned, lists, mirrors) = (particles.owned(), &self.lists, &self.mirrors);
         let (positions, moduli) = (&particles.position, &particles.hourglass_modulus);
         let deformations = &particles.deformation_gradient;
@@ -294,6 +309,9 @@ impl TotalBodies {
     /// Bodies whose particles fail, are turned inside out or meet others of the same body leave the form after this step.
     /// Returns the factor by which neighbours may be farther apart than they were. Collective.
     pub fn finish(&mut self, comm: &Comm) -> f64 {
+        if self.is_empty() {
+            return 1.0;
+        }
         let words = &mut self.words;
         words.clear();
         words.extend(self.leaving.iter().map(|leaves| leaves.load(Relaxed)));
@@ -313,6 +331,9 @@ impl TotalBodies {
     /// Finds bodies that meet themselves: two particles that began far from each other are closer than two may be, while
     /// both expect the other far away. `lists` are those of all bodies.
     pub fn find_folds(&self, particles: &ParticleStore, lists: &Lists) {
+        if self.is_empty() {
+            return;
+        }
         let (images, motion) = (lists.images(), lists.motion());
         lists.chunks().par_iter().for_each(|chunk| {
             for (cluster, neighbours, _) in chunk.iter() {
