@@ -26,7 +26,7 @@ pub struct Shares {
     set: Vec<String>,
 
     /// Answers in the table, by the beginning of their names, as in
-    /// history or bodies.sphere [default: those of bodies and fragments]
+    /// history or bodies.sphere [default: those of bodies, fragments and measures]
     #[arg(short, long, value_name = "NAME", value_delimiter = ',')]
     answers: Vec<String>,
 
@@ -112,9 +112,11 @@ pub struct SweepArgs {
 
 /// Run a case with several spacings and tell what its answers converge to
 ///
-/// Of each answer: its values, and from the three finest spacings the order of convergence, the limit
-/// (Richardson) and the uncertainty (Roache's index, with 1.25). What approaches no limit from one side
-/// has none. The runs are those of a sweep: they go on after a kill.
+/// The spacings of bodies that have their own go with that of the case. Of each answer: its value at the finest
+/// spacing, the limit (Richardson), the half width of the band (Roache's index) and the order of convergence.
+/// Three spacings give the order and a factor of 1.25; two assume the first order, with a factor of 3. What
+/// goes to and fro has its range as band, and what does not approach a limit has none. The runs are those of a
+/// sweep: they go on after a kill.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   whipple converge inputs/quarter-impact --spacings \"0.04, 0.03, 0.02 mm\" \\
@@ -124,7 +126,7 @@ pub struct ConvergeArgs {
     #[arg(value_name = "CASE")]
     case: PathBuf,
 
-    /// Spacings, as in \"0.04, 0.03, 0.02 mm\"
+    /// Spacings of the case, two or more, as in \"0.04, 0.03, 0.02 mm\"
     #[arg(long, value_name = "LIST")]
     spacings: String,
 
@@ -209,18 +211,7 @@ fn converged(args: &ConvergeArgs) -> Result<u8, SweepError> {
             .folder
             .set_file_name(format!("{}-converge", name(&args.case)));
     }
-    let bodies = definition.resolved()?;
-    let bodies = bodies.get("body").and_then(toml::Value::as_array);
-    let own = |body: &&toml::Value| body.get("spacing").is_some();
-    if let Some(body) = bodies.into_iter().flatten().find(own) {
-        let name = body
-            .get("name")
-            .and_then(toml::Value::as_str)
-            .unwrap_or_default();
-        return Err(SweepError::Typed(format!(
-            "the body `{name}` has a `spacing` of its own, which would stay: leave it out"
-        )));
-    }
+    definition.converges = true;
     let (mut sweep, jobs) = args.shares.sweep(definition.clone())?;
     let folder = definition.folder.clone();
     let _lock = hold(definition)?;
@@ -299,6 +290,7 @@ impl Shares {
             digest: String::new(),
             settings: self.set.clone(),
             vary,
+            converges: false,
             bisect: None,
             within: sweep::WITHIN,
             answers: self.answers.clone(),

@@ -137,15 +137,36 @@ fn spacings_converge() {
         "history.kinetic_energy",
     ]);
     let ended = end(command.arg("--out").arg(&out)).with_code(0);
-    assert!(
-        ended.stdout.contains("history.kinetic_energy"),
-        "{ended:#?}"
-    );
+    let line = |part: &str| ended.stdout.lines().find(|line| line.contains(part));
+    assert!(line("answer").unwrap().contains("order"), "{ended:#?}");
+    assert!(line("history.kinetic_energy").is_some(), "{ended:#?}");
     let table = text(&out.join("converge.csv"));
-    assert!(
-        table.contains("\nanswer,unit,0.00012,0.0001,8e-5,rate,limit,uncertainty\n"),
-        "{table}"
-    );
+    let names = "\nanswer,unit,0.00012,0.0001,8e-5,order,limit,uncertainty,basis,remarks\n";
+    assert!(table.contains(names), "{table}");
+}
+
+/// A body with a spacing of its own gets finer with the case.
+#[test]
+fn spacings_of_bodies_converge_too() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("out");
+    let mut command = command(WHIPPLE);
+    command.args(["converge", &quarter_impact(), "--spacings", "0.2, 0.1 mm"]);
+    let graded = "body.plate.spacing={ inner = \"0.05 mm\", outer = \"0.1 mm\", at = [0, 0, 0] }";
+    command.args(["--set", "run.end_time=0.005us", "--set", "spacing=0.1mm"]);
+    command.args(["--set", "body.plate.lattice=glass"]);
+    command.args(["--set", graded, "--answers", "history.kinetic_energy"]);
+    end(command.arg("--out").arg(&out)).with_code(0);
+    let table = text(&out.join("converge.csv"));
+    let row = table.lines().last().unwrap();
+    assert!(row.contains(",assumed,"), "{table}");
+    for (name, inner) in [("0.2mm", "0.0001 m"), ("0.1mm", "5e-5 m")] {
+        let runs = std::fs::read_dir(out.join("points")).unwrap();
+        let mut runs = runs.map(|entry| entry.unwrap().path());
+        let run = runs.find(|run| run.is_dir() && run.to_string_lossy().contains(name));
+        let case = text(&run.unwrap().join("case.toml"));
+        assert!(case.contains(inner), "{case}");
+    }
 }
 
 #[test]

@@ -26,13 +26,15 @@ const OF_THE_ROW: &[&str] = &["step", "time"];
 /// Tables whose last rows are answers by default.
 const DEFAULT_TABLES: &[&str] = &["bodies", "fragments", "measures"];
 
-/// An answer as it is in the table, and its unit; empty for none.
+/// An answer as it is in the table, its unit, and what the table says of its uncertainty; empty for none.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Answer {
     /// A number, a word or nothing.
     pub text: String,
     /// SI unit.
     pub unit: String,
+    /// Half width of the band about a number, in the same unit.
+    pub uncertainty: String,
 }
 
 /// Answers by name: `history.kinetic_energy`, `bodies.sphere.mass`, `summary.energy_error_max`.
@@ -54,7 +56,13 @@ pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
             .into_owned();
         let text = text(&path)?;
         let sheet = Sheet::parse(&text).map_err(|reason| OutputError::damaged(&path, reason))?;
+        let uncertainties = uncertainties(&sheet);
         add_rows(&mut answers, &stem, &sheet.widened());
+        for (figure, uncertainty) in uncertainties {
+            if let Some(answer) = answers.get_mut(&format!("{stem}.{figure}")) {
+                answer.uncertainty = uncertainty;
+            }
+        }
     }
     let path = folder.summary();
     let summary: Json = serde_json::from_slice(&read_small(&path)?)
@@ -81,6 +89,22 @@ pub fn is_wanted(name: &str, wanted: &[String]) -> bool {
 fn text(path: &Path) -> Result<String, OutputError> {
     let content = read_small(path)?;
     String::from_utf8(content).map_err(|error| OutputError::damaged(path, error.to_string()))
+}
+
+/// The last uncertainties of a table with a row for each figure, by `MEASURE.FIGURE`.
+fn uncertainties(sheet: &Sheet) -> BTreeMap<String, String> {
+    let column = |name: &str| sheet.names.iter().position(|n| n == name);
+    let wanted = ["measure", "figure", "uncertainty"].map(column);
+    let [Some(measure), Some(figure), Some(uncertainty)] = wanted else {
+        return BTreeMap::new();
+    };
+    let whole = |row: &&(usize, Vec<String>)| row.1.len() == sheet.names.len();
+    let rows = sheet.rows.iter().filter(whole);
+    rows.map(|(_, row)| {
+        let name = format!("{}.{}", row[measure], row[figure]);
+        (name, row[uncertainty].clone())
+    })
+    .collect()
 }
 
 /// Adds the rows of the last time of a table.
@@ -117,7 +141,13 @@ fn add_rows(answers: &mut Answers, table: &str, sheet: &Sheet) {
                 unit => unit.to_owned(),
             };
             let text = row[column].clone();
-            answers.insert(name, Answer { text, unit });
+            let uncertainty = String::new();
+            let answer = Answer {
+                text,
+                unit,
+                uncertainty,
+            };
+            answers.insert(name, answer);
         }
     }
 }
@@ -141,8 +171,11 @@ fn add_values(answers: &mut Answers, name: &str, value: &Json) {
         Json::String(text) => text.clone(),
         Json::Bool(_) | Json::Number(_) => value.to_string(),
     };
-    let unit = String::new();
-    answers.insert(name.to_owned(), Answer { text, unit });
+    let answer = Answer {
+        text,
+        ..Answer::default()
+    };
+    answers.insert(name.to_owned(), answer);
 }
 
 #[cfg(test)]
@@ -162,6 +195,18 @@ mod tests {
         let text = "time,energy\n0,5\n1,6\n";
         add_rows(&mut answers, "history", &Sheet::parse(text).unwrap());
         assert_eq!(answers["history.energy"].text, "6");
+    }
+
+    #[test]
+    fn figures_keep_their_last_uncertainties() {
+        let text = "time,measure,kind,figure,value,uncertainty,unit\n\
+            0,p,plate,hole,1,0.5,m\n1,p,plate,hole,2,0.25,m\n1,p,plate,verdict,held,,\n1,q";
+        let sheet = Sheet::parse(text).unwrap();
+        let found = uncertainties(&sheet);
+        assert_eq!(found["p.hole"], "0.25");
+        assert_eq!(found["p.verdict"], "");
+        let other = Sheet::parse("time,energy\n0,5\n").unwrap();
+        assert!(uncertainties(&other).is_empty());
     }
 
     #[test]

@@ -141,6 +141,7 @@ mod tests {
         let answer = Answer {
             text: text.to_owned(),
             unit: String::new(),
+            ..Answer::default()
         };
         let answers = Answers::from([(name.to_owned(), answer)]);
         Condition::parse(condition)?.holds(&answers)

@@ -31,6 +31,9 @@ pub struct Definition {
     pub settings: Vec<String>,
     /// `--vary`.
     pub vary: Vec<String>,
+    /// True if the only key is `spacing` and the spacings of bodies go with it.
+    #[serde(default)]
+    pub converges: bool,
     /// `--bisect`.
     pub bisect: Option<String>,
     /// Part of its range to which a bisection goes.
@@ -70,7 +73,7 @@ impl Definition {
         self.digest = format!("{:x}", Sha256::digest(self.text()?.as_bytes()));
         if Self::is_in(&self.folder) {
             let before = Self::read(&self.folder)?;
-            if before.digest != self.digest {
+            if before.digest != self.digest || before.converges != self.converges {
                 let folder = self.folder.display();
                 return Err(SweepError::Typed(format!(
                     "{folder} has a sweep of another case or other settings: take another --out"

@@ -14,6 +14,7 @@ mod point;
 mod queue;
 mod richardson;
 mod shots;
+mod spacings;
 mod table;
 mod values;
 
@@ -120,7 +121,18 @@ impl Sweep {
 
     fn points(&self) -> Result<Vec<Point>, SweepError> {
         let points = self.plan.points(&self.case, &self.known());
-        points.map_err(SweepError::Typed)
+        let mut points = points.map_err(SweepError::Typed)?;
+        if self.definition.converges {
+            for point in &mut points {
+                let spacing = point.values.first().and_then(|value| value.number);
+                let (spacing, _) = spacing.ok_or_else(|| {
+                    SweepError::Typed("a spacing must be a length, as in 0.1 mm".to_owned())
+                })?;
+                let settings = spacings::scaled(&self.case, spacing).map_err(SweepError::Typed)?;
+                point.settings.extend(settings);
+            }
+        }
+        Ok(points)
     }
 
     /// The conditions of points whose runs have ended; a point without an answer is among them.

@@ -190,6 +190,7 @@ mod tests {
         let answer = |text: &str| Answer {
             text: text.to_owned(),
             unit: "m".to_owned(),
+            ..Answer::default()
         };
         let answers = |name: &str| Ended::Answered(Answers::from([(name.to_owned(), answer("7"))]));
         let rows = [
