@@ -1,5 +1,7 @@
 //! A plane and its normal: coordinates across it and along it.
 
+use std::f64::consts::PI;
+
 use numerics::vector::{cross, dot};
 use particles::{MirrorMask, Mirrors};
 
@@ -57,6 +59,20 @@ impl Frame {
     pub fn back(&self, place: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| (0..3).map(|k| place[k] * self.axes[k][a]).sum())
     }
+}
+
+/// The sector, of `count` equal ones, that a direction in a plane points into.
+#[must_use]
+pub fn sector(x: f64, y: f64, count: usize) -> usize {
+    #[expect(clippy::cast_precision_loss, reason = "small")]
+    let turn = (libm::atan2(y, x) / (2.0 * PI) + 0.5) * count as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "at least zero"
+    )]
+    let sector = turn as usize;
+    sector % count
 }
 
 #[cfg(test)]

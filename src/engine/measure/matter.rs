@@ -158,6 +158,34 @@ impl<'a> Matter<'a> {
         words.map(disordered)
     }
 
+    /// Largest values by bin over the particles of all ranks: `terms` raises bins by one; −∞ where there is none.
+    /// Collective.
+    #[must_use]
+    pub fn largest_by_bin(
+        &self,
+        comm: &Comm,
+        bins: usize,
+        terms: impl Fn(usize, &mut [f64]) + Sync,
+    ) -> Vec<f64> {
+        let none = || vec![f64::NEG_INFINITY; bins];
+        let of_chunk = |mut most: Vec<f64>, chunk: usize| {
+            for i in chunk * GRAIN..((chunk + 1) * GRAIN).min(self.len()) {
+                terms(i, &mut most);
+            }
+            most
+        };
+        let join = |mut most: Vec<f64>, others: Vec<f64>| {
+            most.iter_mut().zip(others).for_each(|(a, b)| raise(a, b));
+            most
+        };
+        let chunks = (0..self.len().div_ceil(GRAIN)).into_par_iter();
+        // same bits in any order: some value among all
+        let most = chunks.fold(none, of_chunk).reduce(none, join);
+        let mut words: Vec<u64> = most.into_iter().map(ordered).collect();
+        comm.max_u64(&mut words);
+        words.into_iter().map(disordered).collect()
+    }
+
     /// Counts by bin over the particles of all ranks: `terms` adds to bins. Collective.
     #[must_use]
     pub fn counts(
