@@ -182,6 +182,7 @@ fn a_plate_has_its_hole_and_lips() {
         let found = measure(simulation);
         assert_eq!(told(&found, "verdict"), Told::Word("perforated"));
         is(&found, "hole_diameter", 16.0 * D);
+        is(&found, "opening_diameter", 16.0 * D);
         is(&found, "mid_plane_hole_diameter", 16.0 * D);
         is(&found, "dish_depth", 0.0);
         assert!(number(&found, "deciding_spacing").is_nan());
@@ -328,6 +329,38 @@ fn plates_are_judged_by_what_is_clear() {
             deep * D * (1.0 - radius * radius / 225.0),
         );
     }
+    // A slit is no wider than a rod that passes it, however long it is: it opens what a wide one does not.
+    for (wide, word) in [(0.6, "pinhole"), (2.1, "perforated")] {
+        let mut slit = plate(|[x, y, z]| {
+            let (x0, y0) = (x - 0.5, y - 0.5);
+            let is_open = x0.abs() < 9.0 && y0.abs() < wide;
+            Some(([x, y, if is_open { z + 20.0 } else { z }], STILL))
+        });
+        let found = measure(&mut slit);
+        let (hole, opening) = (
+            number(&found, "hole_diameter"),
+            number(&found, "opening_diameter"),
+        );
+        assert_eq!(told(&found, "verdict"), Told::Word(word), "{hole}");
+        assert!((hole - 2.0 * wide * D).abs() < 1.5 * D, "{wide}: {hole}");
+        let area = 18.0 * 2.0 * wide;
+        assert!(
+            (opening / D - (4.0 * area / PI).sqrt()).abs() < 1.0,
+            "{opening}"
+        );
+    }
+    // What has left to the rear besides a narrow way does not decide that.
+    let mut both = plate(|[x, y, z]| {
+        if (x - 1.0).hypot(y - 0.5) < 0.6 {
+            return Some(([x, y, z + 20.0], STILL));
+        }
+        let left = (x + 8.0).hypot(y) < 5.0 && z < -2.0;
+        Some(([x, y, if left { z - 15.0 } else { z }], STILL))
+    });
+    let found = measure(&mut both);
+    assert_eq!(told(&found, "verdict"), Told::Word("detached spall"));
+    let hole = number(&found, "hole_diameter");
+    assert_eq!(number(&found, "deciding_spacing"), hole / 4.0);
     // A few particles behind it are no spall.
     let mut stray = plate(|[x, y, z]| {
         (x.hypot(y) < 1.0 && z < -3.0).then_some(([x, y, z - 20.0], [0.0, 0.0, -500.0]))

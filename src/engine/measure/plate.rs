@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::attached::Attached;
 use super::figure::{Figure, Findings};
+use super::frame::sector;
 use super::mask::{Mask, diameter};
 use super::matter::{Matter, raise};
 use super::remains::{Belongs, Remains};
@@ -29,7 +30,7 @@ const FARTHEST: f64 = 3.0;
 /// Fate of a plate, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// One sees through it, or what struck it is behind it.
+    /// A rod passes it, or what struck it is behind it.
     Perforated,
     /// Matter of the plate has left its rear side.
     DetachedSpall,
@@ -142,7 +143,7 @@ impl Lip {
             let (x, y) = (x - middle[0], y - middle[1]);
             let distance = libm::hypot(x, y);
             if distance <= farthest {
-                sectors[sector(x, y)].push(distance);
+                sectors[sector(x, y, SECTORS)].push(distance);
             }
         }
         let (mut inner, mut outer, mut found) = (0.0, 0.0, 0.0);
@@ -175,25 +176,15 @@ impl Lip {
     }
 }
 
-/// The sector of a direction.
-fn sector(x: f64, y: f64) -> usize {
-    #[expect(clippy::cast_precision_loss, reason = "small")]
-    let turn = (libm::atan2(y, x) / (2.0 * PI) + 0.5) * SECTORS as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "at least zero"
-    )]
-    let sector = turn as usize;
-    sector % SECTORS
-}
-
 /// Shape of a plate by its window.
 struct Shape {
     /// True if a way leads through it.
     open: bool,
-    /// Of what one sees through; zero unless it is open.
+    /// Diameter (m) of the largest rod along the normal that passes; zero unless it is open.
     hole: f64,
+    /// Diameters (m) of circles with the area of what one sees through, and of what is open half way between the
+    /// faces; zero unless it is open.
+    opening: f64,
     middle: f64,
     lips: [Lip; 2],
     /// Greatest heights (m) beyond the front and the rear face.
@@ -208,24 +199,22 @@ impl Shape {
     fn of(slab: &Slab, attached: &Attached) -> Self {
         let edge = attached.window.edge;
         let is_open = attached.is_open();
-        let inside = |mask: Mask| mask.largest_inside();
-        let hole = inside(attached.open());
+        let open = attached.open();
+        let rod = open.inside().largest_disc();
+        let hole = open.largest_inside();
         let middle = 0.5 * (slab.front + slab.rear);
-        let at_middle = inside(attached.open_between(middle, middle));
+        let at_middle = attached.open_between(middle, middle).largest_inside();
         let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
         let raised = [
             attached.filled_between(above, f64::MAX),
             attached.filled_between(f64::MIN, below),
         ];
-        let width = |mask: &Mask| {
-            if is_open {
-                diameter(mask.count(), edge)
-            } else {
-                0.0
-            }
+        let width = |cells: usize| {
+            if is_open { diameter(cells, edge) } else { 0.0 }
         };
+        let opening = width(hole.count());
         let lips = raised.map(|raised| {
-            if width(&hole) > LEAST * edge {
+            if opening > LEAST * edge {
                 Lip::about(&hole, &raised, attached)
             } else {
                 Lip::NONE
@@ -245,8 +234,9 @@ impl Shape {
         let wide = |mask: &Mask| diameter(mask.largest_part().count(), edge) >= LEAST * edge;
         Self {
             open: is_open,
-            hole: width(&hole),
-            middle: width(&at_middle),
+            hole: width(rod),
+            opening,
+            middle: width(at_middle.count()),
             lips,
             heights: [front, rear],
             dish,
@@ -260,6 +250,7 @@ impl Shape {
         Self {
             open: false,
             hole: 0.0,
+            opening: 0.0,
             middle: 0.0,
             lips: [Lip::NONE, Lip::NONE],
             heights: [0.0; 2],
@@ -293,11 +284,11 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
     let length = |name, value: f64| Figure::number(name, value, "m").within(shape.edge);
     let mass = |name, value: f64| Figure::number(name, value, "kg");
     let [front, rear] = &shape.lips;
-    // Of a way that is nowhere straight half of this run's.
-    let deciding = match verdict {
-        Verdict::Pinhole if shape.hole > 0.0 => shape.hole / DECIDED,
-        Verdict::Pinhole => 0.5 * shape.edge,
-        _ => f64::NAN,
+    // Of a way that is nowhere straight half of this run's. What has left besides does not decide it.
+    let deciding = match (shape.open, verdict) {
+        (false, _) | (true, Verdict::Perforated) => f64::NAN,
+        (true, _) if shape.hole > 0.0 => shape.hole / DECIDED,
+        (true, _) => 0.5 * shape.edge,
     };
     let (behind, stray) = if left.rear < least {
         (0.0, left.rear)
@@ -308,6 +299,7 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
         figures: vec![
             Figure::word("verdict", verdict.word()),
             length("hole_diameter", shape.hole),
+            length("opening_diameter", shape.opening),
             length("mid_plane_hole_diameter", shape.middle),
             Figure::number("deciding_spacing", deciding, "m"),
             length("front_lip_inner_diameter", front.inner),
