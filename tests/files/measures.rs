@@ -460,6 +460,12 @@ const QUARTER: [Axis; 2] = [Axis::X, Axis::Y];
 
 /// Stretches a bar across itself, by a factor of the height (in spacings), and squeezes it along itself so that it
 /// keeps its volume; gives the height of its head (in spacings).
+#[allow(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "small counts"
+)]
 fn stretch(simulation: &mut Simulation, length: f64, by: impl Fn(f64) -> f64) -> f64 {
     const PIECES: usize = 20_000;
     let piece = length / PIECES as f64;
