@@ -21,7 +21,8 @@ use numerics::vector::{dot, minus, norm};
 use numerics::virial::Virial;
 use particles::neighbours::{Among, Cluster, Groups, Lists};
 use particles::{
-    Active, HaloImages, Image, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
+    Active, GRAIN, HaloImages, Image, Mirrors, ParticleStore, Scatter, material_points, records_of,
+    resize,
 };
 use sums::corrected::CorrectedRecord;
 use sums::from_mirrors::FromMirrors;
@@ -373,6 +374,17 @@ impl TotalBodies {
             norm(&[row(0), row(1), row(2)]) > far
         };
         norm(&apart) > far && expects(a) && expects(b)
+    }
+
+    /// Sets deformation gradients of bodies that have another form to zero, since no step does.
+    pub fn clear_others(&self, particles: &mut ParticleStore) {
+        let owned = particles.owned();
+        let gradients = particles.deformation_gradient[..owned].par_iter_mut();
+        let of_others = gradients
+            .zip(&particles.body)
+            .with_min_len(GRAIN)
+            .filter(|(_, body)| !self.holds(**body as usize));
+        of_others.for_each(|(gradient, _)| *gradient = [0.0; 9]);
     }
 
     /// Sorted images and their neighbours in the initial configuration.
