@@ -136,12 +136,13 @@ impl Radiographs {
                 let mut images = Vec::new();
                 let mut spots = Vec::new();
                 for grain in part {
-                    mirrors.reflect(&grain.point, &mut images);
+                    mirrors.reflect(&grain.point, &grain.shape, &mut images);
                     spots.extend(images.iter().map(|image| {
                         let [right, up, _] = self.camera.project(&image.point);
+                        let shape = self.camera.shape(&image.shape);
                         Spot {
                             at: [right, up],
-                            size: grain.size,
+                            size: [0, 1].map(|axis| shape.reach(axis)),
                             mass: grain.value,
                         }
                     }));

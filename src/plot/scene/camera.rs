@@ -1,6 +1,7 @@
 //! From where a model is seen.
 
 use crate::PlotError;
+use numerics::ellipsoid::Ellipsoid;
 
 /// The names of views, with the azimuth and the elevation of the viewer (degrees).
 const NAMES: [(&str, [f64; 2]); 7] = [
@@ -92,6 +93,12 @@ impl Camera {
     #[must_use]
     pub fn project(&self, point: &[f64; 3]) -> [f64; 3] {
         [&self.right, &self.up, &self.towards].map(|axis| dot(axis, point))
+    }
+
+    /// A shape along the same axes.
+    #[must_use]
+    pub fn shape(&self, shape: &Ellipsoid) -> Ellipsoid {
+        shape.along(&[self.right, self.up, self.towards])
     }
 }
 

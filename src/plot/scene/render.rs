@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::buffer::{Ball, Buffer, Seen};
+use super::buffer::{Ball, Buffer, Outline, Seen};
 use super::camera::Camera;
 use super::cut::Cuts;
 use super::occlusion::openness;
@@ -121,10 +121,10 @@ impl Stage<'_> {
             let mut images = Vec::new();
             let mut balls = Vec::new();
             for grain in part.iter().filter(&selection) {
-                mirrors.reflect(&grain.point, &mut images);
+                mirrors.reflect(&grain.point, &grain.shape, &mut images);
                 balls.extend(images.iter().map(|image| Ball {
                     at: window.to_samples(self.camera.project(&image.point)),
-                    radius: window.length(RADIUS * grain.size),
+                    outline: Outline::new(&self.camera.shape(&image.shape), window.length(RADIUS)),
                     value: single(if image.flipped {
                         -grain.value
                     } else {

@@ -10,6 +10,7 @@ use super::images::Mirrors;
 use super::slice::{mirrored, position_text};
 use super::snapshot::Snapshot;
 use crate::PlotError;
+use numerics::ellipsoid::Ellipsoid;
 
 /// Particles that one task takes.
 pub const PORTION: usize = 8192;
@@ -19,8 +20,8 @@ pub const PORTION: usize = 8192;
 pub struct Grain {
     /// Position (m).
     pub point: [f64; 3],
-    /// Its size s, the spacing of the volume that it has now (m).
-    pub size: f64,
+    /// Its shape.
+    pub shape: Ellipsoid,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn number in its own unit; that of a body is 0.
@@ -105,7 +106,7 @@ impl Selection {
     ) -> Result<Vec<Grain>, PlotError> {
         let points = snapshot.file.points(rows.clone())?;
         let bodies = snapshot.body_of(rows.clone())?;
-        let sizes = snapshot.sizes(rows.clone(), &bodies)?;
+        let shapes = snapshot.shapes(rows.clone(), &bodies)?;
         let bearers = self.drawn.bearers(snapshot, rows)?;
         let is_drawn: Vec<bool> = numbers.iter().map(|&n| self.bodies.shows(n)).collect();
         let grain = |k: usize| {
@@ -113,7 +114,7 @@ impl Selection {
             let known = point.iter().all(|c| c.is_finite());
             (bearers[k] && is_drawn[body] && known).then(|| Grain {
                 point,
-                size: sizes[k],
+                shape: shapes[k],
                 body: numbers[body],
                 value: values[k],
             })

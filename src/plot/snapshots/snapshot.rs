@@ -7,6 +7,7 @@ use super::extent::{Extent, Mover};
 use crate::PlotError;
 use files::output::h5::read::SnapshotFile;
 use model::{Axis, SymmetryPlane};
+use numerics::ellipsoid::Ellipsoid;
 
 /// Particles read at a time, so that a large snapshot is never whole in memory.
 const CHUNK: usize = 1 << 20;
@@ -42,6 +43,9 @@ pub struct Snapshot {
 /// Largest size of a particle in spacings of its body at the start: beyond twice a smoothing length
 /// particles do not know of each other, however thin they are.
 pub const LARGEST: f64 = 4.0;
+
+/// The field of deformation gradients, zero where a body has none.
+const DEFORMATION: &str = "deformation_gradient";
 
 /// The field that marks frozen particles.
 pub const FROZEN: &str = "frozen";
@@ -223,6 +227,29 @@ impl Snapshot {
             .zip(growths)
             .map(|(s, growth)| s * growth)
             .collect())
+    }
+
+    /// Shape of some particles, of radius s, along the axes of the model: what their deformation gradient makes of a ball of
+    /// their first spacing s, or a ball of their [size](Self::sizes) where the snapshot holds none.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
+    pub fn shapes(
+        &self,
+        rows: Range<usize>,
+        bodies: &[usize],
+    ) -> Result<Vec<Ellipsoid>, PlotError> {
+        let sizes = self.sizes(rows.clone(), bodies)?.into_iter();
+        if !self.has(DEFORMATION)? || self.file.components(DEFORMATION)? != 9 {
+            return Ok(sizes.map(Ellipsoid::ball).collect());
+        }
+        let first = self.first_sizes(rows.clone(), bodies)?;
+        let gradients = self.file.values(DEFORMATION, rows)?;
+        let all = sizes.zip(first).zip(gradients.as_chunks::<9>().0);
+        let shape = |((size, first), gradient): ((f64, f64), &[f64; 9])| {
+            Ellipsoid::image(first, gradient).unwrap_or_else(|| Ellipsoid::ball(size))
+        };
+        Ok(all.map(shape).collect())
     }
 
     /// Masses of some particles (kg; per metre or square metre of a flat model): those that the

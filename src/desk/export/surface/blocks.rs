@@ -141,10 +141,10 @@ type Span = [[i32; 2]; 3];
 
 fn span(ball: &Ball, pitch: f64) -> Option<Span> {
     let edge = pitch * CELLS as f64;
-    let reach = ball.reach();
     let mut span = [[0; 2]; 3];
     let mut count = 1.0;
-    for (span, x) in span.iter_mut().zip(ball.centre) {
+    for (axis, span) in span.iter_mut().enumerate() {
+        let (x, reach) = (ball.centre[axis], ball.reach(axis));
         // A cell more on both sides, so that each node in reach is inside whatever is rounded.
         let ends = [x - reach - pitch, x + reach + pitch].map(|x| (x / edge).floor());
         if !ends.iter().all(|end| end.abs() < FARTHEST) {
@@ -172,11 +172,12 @@ fn visit_blocks(span: &Span, mut emit: impl FnMut([i32; 3])) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use numerics::ellipsoid::Ellipsoid;
 
     fn lattice(body: u32, first: usize) -> impl Iterator<Item = Ball> {
         (0..8 * 8 * 6).map(move |n| Ball {
             centre: [n % 8, n / 8 % 8, first + n / 64].map(|k| 1e-3 * k as f64),
-            size: 1e-3,
+            shape: Ellipsoid::ball(1e-3),
             body,
         })
     }
@@ -199,7 +200,7 @@ mod tests {
         for body in [0, 1, 2].into_iter().cycle().take(60) {
             balls.push(Ball {
                 centre: [random(), random(), random()].map(|x| 0.012 * x - 0.002),
-                size: 1e-3 * (0.6 + 0.8 * random()),
+                shape: Ellipsoid::ball(1e-3 * (0.6 + 0.8 * random())),
                 body,
             });
         }

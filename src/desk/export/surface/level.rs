@@ -1,5 +1,6 @@
 //! The level of a body at the nodes of a block.
 
+use numerics::ellipsoid::{Ellipsoid, square};
 use plot::{REACH, weight};
 
 /// A particle as far as it fills space.
@@ -7,16 +8,16 @@ use plot::{REACH, weight};
 pub struct Ball {
     /// Its place (m).
     pub centre: [f64; 3],
-    /// Its size s (m).
-    pub size: f64,
+    /// Its shape, of radius s.
+    pub shape: Ellipsoid,
     /// Number of its body.
     pub body: u32,
 }
 
 impl Ball {
-    /// Reach of its weight (m).
-    pub fn reach(&self) -> f64 {
-        REACH * self.size
+    /// Reach of its weight along an axis (m).
+    pub fn reach(&self, axis: usize) -> f64 {
+        REACH * self.shape.reach(axis)
     }
 }
 
@@ -38,23 +39,14 @@ pub fn node(i: usize, j: usize, k: usize) -> usize {
 
 /// Adds the weights of a particle to the nodes.
 pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
-    let square = |axis: usize, n: usize| {
-        let distance = (coordinates[axis][n] - ball.centre[axis]) / ball.size;
-        distance * distance
-    };
-    let most = REACH * REACH;
-    for k in 0..NODES {
-        let z = square(2, k);
-        if z >= most {
-            continue;
-        }
-        for j in 0..NODES {
-            let yz = z + square(1, j);
-            if yz >= most {
-                continue;
-            }
-            for i in 0..NODES {
-                sums[node(i, j, k)] += weight(yz + square(0, i));
+    let metric = ball.shape.metric();
+    let from = |axis: usize, n: usize| coordinates[axis][n] - ball.centre[axis];
+    let near = |axis: usize| (0..NODES).filter(move |&n| from(axis, n).abs() < ball.reach(axis));
+    for k in near(2) {
+        for j in near(1) {
+            for i in near(0) {
+                let from = [from(0, i), from(1, j), from(2, k)];
+                sums[node(i, j, k)] += weight(square(&metric, &from));
             }
         }
     }
