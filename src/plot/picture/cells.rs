@@ -1,26 +1,13 @@
 //! The bodies that particles fill, and their fields, at every point.
 //!
-//! A particle fills a cell about it of its own [shape](Snapshot::shapes): of the size s in all directions, the spacing of
-//! the volume it has now, or of what the deformation gradient makes of the first one. Each has the weight
-//!
-//! ```text
-//! w(r) = ((2 − r²/s²)/(2 − 1/4))⁴   for r < √2 s, else 0 ,
-//! ```
-//!
-//! which is one at r = s/2, and a point is filled if the weights of a body's particles add up to
-//! one. So a lone particle is a ball of diameter s. On a cubic lattice of any dimension the power
-//! makes 2 w(s/√2) and 4 w(√3/2 s) one, too: the free surface is plane, .50 to .55 spacings outside
-//! the outermost layer, and the sum inside is two or more, without holes. A lattice that is deformed evenly is drawn as the
-//! deformed picture of it.
+//! Particles fill places as [their shapes](crate::snapshots::shape) say.
 //!
 //! Bodies are separate: the one with the largest sum fills the point, so that the line between two
 //! bodies in touch is smooth, and a gap between them is not filled by both together.
 
 use super::view::View;
-use numerics::ellipsoid::{Ellipsoid, square};
-
-/// Reach of a particle's weight, in its own sizes.
-pub const REACH: f64 = std::f64::consts::SQRT_2;
+use crate::snapshots::shape::{Fill, Shape};
+use numerics::ellipsoid::square;
 
 /// A particle near a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,8 +16,8 @@ pub struct Cell {
     pub at: [f64; 2],
     /// Distance from the plane along its normal (m).
     pub depth: f64,
-    /// Its shape, of radius s, along the picture's axes and its normal.
-    pub shape: Ellipsoid,
+    /// Its shape along the picture's axes and the normal.
+    pub shape: Shape,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn field in its own unit; none for rigid bodies.
@@ -41,20 +28,13 @@ impl Cell {
     /// `true` if it counts for the plane: if that cuts the particle by itself, or is half-way
     /// between two layers, which may have come closer since their sizes were the distance.
     pub fn is_cut(&self) -> bool {
-        self.depth.abs() <= 0.75 * self.shape.reach(2)
+        self.depth.abs() <= 0.75 * self.shape.size(2)
     }
 
     /// Half its size along the picture's axes (m).
     pub fn radii(&self) -> [f64; 2] {
-        [0, 1].map(|axis| 0.5 * self.shape.reach(axis))
+        [0, 1].map(|axis| 0.5 * self.shape.size(axis))
     }
-}
-
-/// The weight of a particle at a squared distance in units of its size.
-#[must_use]
-pub fn weight(distance: f64) -> f64 {
-    let rest = ((2.0 - distance) / 1.75).max(0.0);
-    (rest * rest) * (rest * rest)
 }
 
 /// The body and field at a point.
@@ -86,12 +66,15 @@ impl<'a> Tiles<'a> {
     /// Sorts cells, which are in the order of their bodies, into tiles of a view; none is smaller
     /// than `finest` (m).
     pub fn new(cells: &'a [Cell], view: View, finest: f64) -> Self {
-        let sizes = cells.iter().map(|cell| cell.shape.reach(0));
+        let sizes = cells.iter().map(|cell| cell.shape.size(0));
         let mean = sizes.sum::<f64>() / cells.len().max(1) as f64;
         let pitch = (1.5 * mean).max(finest);
         let mut tiles = Self {
             cells,
-            metrics: cells.iter().map(|cell| cell.shape.metric()).collect(),
+            metrics: cells
+                .iter()
+                .map(|cell| cell.shape.ellipsoid.metric())
+                .collect(),
             view,
             pitch,
             columns: count(view.width() / pitch),
@@ -118,7 +101,7 @@ impl<'a> Tiles<'a> {
     fn visit(&self, rows: usize, mut each: impl FnMut(u32, usize)) {
         for (index, cell) in (0..).zip(self.cells) {
             let span = |axis: usize, low: f64, most: usize| {
-                let (at, reach) = (cell.at[axis], REACH * cell.shape.reach(axis));
+                let (at, reach) = (cell.at[axis], cell.shape.reach(axis));
                 let first = ((at - reach - low) / self.pitch).floor().max(0.0);
                 let last = ((at + reach - low) / self.pitch)
                     .floor()
@@ -161,15 +144,14 @@ impl<'a> Tiles<'a> {
     /// The sum of weights of some cells of one body at a place, and their mean field. It is no
     /// number where that of the nearest is none; others without a number have no part in it.
     fn fill(&self, entries: &[u32], at: [f64; 2]) -> (f64, Option<f64>) {
-        let mut fill = 0.0;
+        let mut fill = Fill::default();
         let (mut sum, mut share) = (0.0, 0.0);
         let mut nearest = (f64::INFINITY, None);
         for &k in entries {
             let cell = &self.cells[k as usize];
             let from = [at[0] - cell.at[0], at[1] - cell.at[1], -cell.depth];
             let distance = square(&self.metrics[k as usize], &from);
-            let w = weight(distance);
-            fill += w;
+            let w = fill.add(&cell.shape, distance);
             if distance < nearest.0 {
                 nearest = (distance, cell.value);
             }
@@ -185,7 +167,7 @@ impl<'a> Tiles<'a> {
                 own
             }
         });
-        (fill, value)
+        (fill.level(), value)
     }
 }
 
@@ -217,7 +199,7 @@ mod tests {
         Cell {
             at,
             depth,
-            shape: Ellipsoid::ball(1.0),
+            shape: Shape::ball(1.0),
             body,
             value: Some(at[0]),
         }
@@ -232,7 +214,7 @@ mod tests {
             for j in 0..8 {
                 for k in 0..if flat { 1 } else { 8 } {
                     let depth = if flat { 0.0 } else { at(k) + shift };
-                    if depth.abs() < REACH {
+                    if depth.abs() < Shape::ball(1.0).reach(2) {
                         cells.push(cell([at(i), at(j)], depth, 0));
                     }
                 }
@@ -266,7 +248,7 @@ mod tests {
     fn a_lone_particle_is_a_ball_of_its_size() {
         for size in [0.5, 1.0, 2.0] {
             let cells = [Cell {
-                shape: Ellipsoid::ball(size),
+                shape: Shape::ball(size),
                 ..cell([0.0; 2], 0.0, 0)
             }];
             let tiles = Tiles::new(&cells, VIEW, 0.01);
@@ -283,7 +265,7 @@ mod tests {
         let image = |at: [f64; 3]| {
             [0, 1, 2].map(|a| (0..3).map(|b| gradient[3 * a + b] * at[b]).sum::<f64>())
         };
-        let shape = Ellipsoid::image(1.0, &gradient).unwrap();
+        let shape = Shape::image(1.0, &gradient, 3).unwrap();
         for shift in [0.0, 0.2, 0.5] {
             let mut cells = Vec::new();
             for k in 0..512 {
@@ -310,6 +292,39 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    /// Disorder leaves holes between balls, but not in a body that has not torn; its surface stays.
+    #[test]
+    fn disorder_without_tears_is_solid() {
+        let unit = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let whole = Shape::image(1.0, &unit, 3).unwrap();
+        for (shape, solid) in [(whole, true), (Shape::ball(1.0), false)] {
+            let mut seed = 1_u32;
+            let mut cells = Vec::new();
+            for k in 0..1000 {
+                let [x, y, z] = [k % 10, k / 10 % 10, k / 100].map(|k: i32| {
+                    seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    f64::from(k) - 4.5 + 0.8 * (f64::from(seed >> 8) / f64::from(1 << 24) - 0.5)
+                });
+                cells.push(Cell {
+                    shape,
+                    ..cell([x, y], z, 0)
+                });
+            }
+            let tiles = Tiles::new(&cells, VIEW, 0.01);
+            let mut holes = 0;
+            for k in 0..=200 {
+                for l in 0..=200 {
+                    let at = [k, l].map(|k| f64::from(k) * 0.06 - 6.0);
+                    let outside = at[0].abs().max(at[1].abs()) - 5.0;
+                    let is_filled = tiles.sample(at).is_some();
+                    holes += usize::from(outside < -0.5 && !is_filled);
+                    assert!(outside < 0.55 || !is_filled, "{at:?}");
+                }
+            }
+            assert_eq!(holes == 0, solid, "{holes}");
         }
     }
 

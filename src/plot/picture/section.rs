@@ -3,17 +3,17 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::cells::{Cell, REACH};
+use super::cells::Cell;
 use super::view::View;
 use crate::PlotError;
 use crate::snapshots::field::Drawn;
 use crate::snapshots::images::{Image, Mirrors};
 use crate::snapshots::plane::Plane;
+use crate::snapshots::shape::Shape;
 use crate::snapshots::slice::{NUDGE, mirrored, slice};
-use crate::snapshots::snapshot::{LARGEST, Snapshot};
+use crate::snapshots::snapshot::Snapshot;
 use crate::units::Readable;
 use model::{Axis, SymmetryPlane};
-use numerics::ellipsoid::{Ellipsoid, MOST};
 
 /// The way the particles of a section are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Cut {
         let coarsest = snapshot.coarsest();
         let axes = self.plane.axes();
         let reach = match self.drawn_as {
-            DrawnAs::Cut => REACH * LARGEST.max(MOST) * coarsest,
+            DrawnAs::Cut => snapshot.reach(),
             DrawnAs::Particles => self.thickness.unwrap_or(2.0 * coarsest),
         };
         let mut cells = Vec::new();
@@ -80,7 +80,7 @@ impl Cut {
             let sizes = snapshot.first_sizes(rows.clone(), &bodies)?;
             let shapes = match self.drawn_as {
                 DrawnAs::Cut => snapshot.shapes(rows.clone(), &bodies)?,
-                DrawnAs::Particles => sizes.iter().copied().map(Ellipsoid::ball).collect(),
+                DrawnAs::Particles => sizes.iter().copied().map(Shape::ball).collect(),
             };
             let values = self.drawn.values(snapshot, rows.clone())?;
             let bearers = self.drawn.bearers(snapshot, rows)?;
@@ -95,7 +95,7 @@ impl Cut {
                 let cell = |image: &Image| {
                     let shape = image.shape.along(&axes);
                     let half = match self.drawn_as {
-                        DrawnAs::Cut => REACH * shape.reach(2),
+                        DrawnAs::Cut => shape.reach(2),
                         DrawnAs::Particles => self.half_thickness(size, &snapshot.symmetry),
                     };
                     let at = self.flatten(&image.point, half, size)?;

@@ -142,7 +142,7 @@ impl Radiographs {
                         let shape = self.camera.shape(&image.shape);
                         Spot {
                             at: [right, up],
-                            size: [0, 1].map(|axis| shape.reach(axis)),
+                            size: [0, 1].map(|axis| shape.size(axis)),
                             mass: grain.value,
                         }
                     }));

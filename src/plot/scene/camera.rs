@@ -1,7 +1,7 @@
 //! From where a model is seen.
 
 use crate::PlotError;
-use numerics::ellipsoid::Ellipsoid;
+use crate::snapshots::shape::Shape;
 
 /// The names of views, with the azimuth and the elevation of the viewer (degrees).
 const NAMES: [(&str, [f64; 2]); 7] = [
@@ -97,7 +97,7 @@ impl Camera {
 
     /// A shape along the same axes.
     #[must_use]
-    pub fn shape(&self, shape: &Ellipsoid) -> Ellipsoid {
+    pub fn shape(&self, shape: &Shape) -> Shape {
         shape.along(&[self.right, self.up, self.towards])
     }
 }

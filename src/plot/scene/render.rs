@@ -124,7 +124,10 @@ impl Stage<'_> {
                 mirrors.reflect(&grain.point, &grain.shape, &mut images);
                 balls.extend(images.iter().map(|image| Ball {
                     at: window.to_samples(self.camera.project(&image.point)),
-                    outline: Outline::new(&self.camera.shape(&image.shape), window.length(RADIUS)),
+                    outline: Outline::new(
+                        &self.camera.shape(&image.shape).ellipsoid,
+                        window.length(RADIUS),
+                    ),
                     value: single(if image.flipped {
                         -grain.value
                     } else {

@@ -110,7 +110,7 @@ impl Survey {
                         bodies.insert(grain.body);
                         let shape = camera.shape(&image.shape);
                         for (k, (reach, at)) in reach.iter_mut().zip(at).enumerate() {
-                            let radius = self.sizes * shape.reach(k);
+                            let radius = self.sizes * shape.size(k);
                             *reach = [reach[0].min(at - radius), reach[1].max(at + radius)];
                         }
                         if bears {

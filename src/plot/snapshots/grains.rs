@@ -7,10 +7,10 @@ use rayon::prelude::*;
 use super::bodies::Bodies;
 use super::field::Drawn;
 use super::images::Mirrors;
+use super::shape::Shape;
 use super::slice::{mirrored, position_text};
 use super::snapshot::Snapshot;
 use crate::PlotError;
-use numerics::ellipsoid::Ellipsoid;
 
 /// Particles that one task takes.
 pub const PORTION: usize = 8192;
@@ -21,7 +21,7 @@ pub struct Grain {
     /// Position (m).
     pub point: [f64; 3],
     /// Its shape.
-    pub shape: Ellipsoid,
+    pub shape: Shape,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn number in its own unit; that of a body is 0.

@@ -1,8 +1,8 @@
 //! Images of particles at planes of symmetry.
 
 use super::field::Drawn;
+use super::shape::Shape;
 use model::SymmetryPlane;
-use numerics::ellipsoid::Ellipsoid;
 
 /// A place where a particle or an image of it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Image {
     /// Position (m).
     pub point: [f64; 3],
     /// Shape.
-    pub shape: Ellipsoid,
+    pub shape: Shape,
     /// `true` if the drawn number has the other sign there.
     pub flipped: bool,
 }
@@ -41,7 +41,7 @@ impl Mirrors {
     }
 
     /// Fills `images` with a particle of a shape and its reflections.
-    pub fn reflect(&self, point: &[f64; 3], shape: &Ellipsoid, images: &mut Vec<Image>) {
+    pub fn reflect(&self, point: &[f64; 3], shape: &Shape, images: &mut Vec<Image>) {
         images.clear();
         images.push(Image {
             point: *point,
@@ -74,7 +74,7 @@ mod tests {
         };
         let mirrors = Mirrors::new(vec![plane(Axis::X), plane(Axis::Y)], &Drawn::Body);
         let mut images = Vec::new();
-        let ball = Ellipsoid::ball(1.0);
+        let ball = Shape::ball(1.0);
         mirrors.reflect(&[1.5, 1.25, 3.0], &ball, &mut images);
         let points: Vec<_> = images.iter().map(|image| image.point).collect();
         let expected = [

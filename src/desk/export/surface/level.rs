@@ -1,24 +1,17 @@
 //! The level of a body at the nodes of a block.
 
-use numerics::ellipsoid::{Ellipsoid, square};
-use plot::{REACH, weight};
+use numerics::ellipsoid::square;
+use plot::{Fill, Shape};
 
 /// A particle as far as it fills space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// Its place (m).
     pub centre: [f64; 3],
-    /// Its shape, of radius s.
-    pub shape: Ellipsoid,
+    /// Its shape.
+    pub shape: Shape,
     /// Number of its body.
     pub body: u32,
-}
-
-impl Ball {
-    /// Reach of its weight along an axis (m).
-    pub fn reach(&self, axis: usize) -> f64 {
-        REACH * self.shape.reach(axis)
-    }
 }
 
 /// Cells along an edge of a block.
@@ -37,16 +30,17 @@ pub fn node(i: usize, j: usize, k: usize) -> usize {
     (k * NODES + j) * NODES + i
 }
 
-/// Adds the weights of a particle to the nodes.
-pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
-    let metric = ball.shape.metric();
+/// Adds a particle to what fills the nodes.
+pub fn add(ball: &Ball, coordinates: &Coordinates, fills: &mut [Fill]) {
+    let metric = ball.shape.ellipsoid.metric();
     let from = |axis: usize, n: usize| coordinates[axis][n] - ball.centre[axis];
-    let near = |axis: usize| (0..NODES).filter(move |&n| from(axis, n).abs() < ball.reach(axis));
+    let near =
+        |axis: usize| (0..NODES).filter(move |&n| from(axis, n).abs() < ball.shape.reach(axis));
     for k in near(2) {
         for j in near(1) {
             for i in near(0) {
                 let from = [from(0, i), from(1, j), from(2, k)];
-                sums[node(i, j, k)] += weight(square(&metric, &from));
+                fills[node(i, j, k)].add(&ball.shape, square(&metric, &from));
             }
         }
     }
@@ -54,10 +48,10 @@ pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
 
 /// The level of each body from the sums of all, node by node: of the fourth roots of these, which are
 /// nearly linear near a surface where the sums are steep.
-pub fn levels(mut sums: Vec<Nodes>) -> Vec<Nodes> {
-    for sum in sums.iter_mut().flatten() {
-        *sum = sum.sqrt().sqrt();
-    }
+pub fn levels(fills: &[Vec<Fill>]) -> Vec<Nodes> {
+    let root = |fill: &Fill| fill.level().sqrt().sqrt();
+    let roots = fills.iter().map(|fills| fills.iter().map(root).collect());
+    let sums: Vec<Nodes> = roots.collect();
     let level = |body: usize| {
         let at = |n: usize| {
             let others = sums.iter().enumerate().filter(|(other, _)| *other != body);

@@ -72,7 +72,7 @@ fn balls(frame: &Frame, mirror: bool) -> Result<Vec<Ball>, ExportError> {
     let (mut balls, mut images) = (Vec::new(), Vec::new());
     for rows in snapshot.chunks() {
         let grains = selection.grains(snapshot, &numbers, rows)?;
-        for grain in grains.iter().filter(|grain| grain.shape.reach(0) > 0.0) {
+        for grain in grains.iter().filter(|grain| grain.shape.size(0) > 0.0) {
             mirrors.reflect(&grain.point, &grain.shape, &mut images);
             balls.extend(images.iter().map(|image| Ball {
                 centre: image.point,
