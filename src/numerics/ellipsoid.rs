@@ -49,6 +49,13 @@ impl Ellipsoid {
         self.0[axis].sqrt()
     }
 
+    /// How far it reaches in any direction (m).
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        let (squares, _) = principal(&self.0);
+        squares.into_iter().fold(0.0, f64::max).sqrt()
+    }
+
     /// Its component of two axes (m²).
     #[must_use]
     pub fn component(&self, a: usize, b: usize) -> f64 {
@@ -168,6 +175,7 @@ mod tests {
             [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
         ] {
             let ellipsoid = Ellipsoid::image(1.0, &gradient).unwrap();
+            assert!(ellipsoid.farthest() <= MOST + 1e-9);
             assert!((0..3).all(|a| (LEAST - 1e-9..=MOST + 1e-9).contains(&ellipsoid.reach(a))));
             assert!(ellipsoid.metric().iter().all(|m| m.is_finite()));
         }

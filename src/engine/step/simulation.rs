@@ -593,7 +593,8 @@ impl Simulation {
     pub fn complete_shown(&mut self, comm: &Comm) {
         contact_stress::measure_in(self, comm);
         if let Some(total) = self.sph.total() {
-            total.clear_others(&mut self.particles);
+            let gradients = total.gradients(&self.particles);
+            self.particles.deformation_gradient[..gradients.len()].copy_from_slice(&gradients);
         }
     }
 

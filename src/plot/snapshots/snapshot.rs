@@ -125,6 +125,7 @@ impl Snapshot {
     }
 
     /// Distance beyond which a particle has no part in a place (m).
+    #[must_use]
     pub fn reach(&self) -> f64 {
         let first = if self.deforms { self.coarsest() } else { 0.0 };
         Shape::farthest(first, LARGEST * self.coarsest())

@@ -21,8 +21,7 @@ use numerics::vector::{dot, minus, norm};
 use numerics::virial::Virial;
 use particles::neighbours::{Among, Cluster, Groups, Lists};
 use particles::{
-    Active, GRAIN, HaloImages, Image, Mirrors, ParticleStore, Scatter, material_points, records_of,
-    resize,
+    Active, HaloImages, Image, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
 };
 use sums::corrected::CorrectedRecord;
 use sums::from_mirrors::FromMirrors;
@@ -136,7 +135,8 @@ impl TotalBodies {
     }
 
     /// True if no body is of this form any more.
-    fn is_empty(&self) -> bool {
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.others.iter().all(|&other| other)
     }
 
@@ -376,15 +376,21 @@ impl TotalBodies {
         norm(&apart) > far && expects(a) && expects(b)
     }
 
-    /// Sets deformation gradients of bodies that have another form to zero, since no step does.
-    pub fn clear_others(&self, particles: &mut ParticleStore) {
-        let owned = particles.owned();
-        let gradients = particles.deformation_gradient[..owned].par_iter_mut();
-        let of_others = gradients
-            .zip(&particles.body)
-            .with_min_len(GRAIN)
-            .filter(|(_, body)| !self.holds(**body as usize));
-        of_others.for_each(|(gradient, _)| *gradient = [0.0; 9]);
+    /// Deformation gradients of this rank's particles: zero of bodies that have another form, whose fields no step writes.
+    #[must_use]
+    pub fn gradients(&self, particles: &ParticleStore) -> Vec<[f64; 9]> {
+        let gradient = |i: usize| {
+            let holds = self.holds(particles.body[i] as usize);
+            if holds {
+                particles.deformation_gradient[i]
+            } else {
+                [0.0; 9]
+            }
+        };
+        (0..particles.owned())
+            .into_par_iter()
+            .map(gradient)
+            .collect()
     }
 
     /// Sorted images and their neighbours in the initial configuration.
