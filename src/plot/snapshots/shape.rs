@@ -68,6 +68,12 @@ impl Shape {
         (WIDE * MOST * first).max(REACH * present)
     }
 
+    /// True if its body has not torn.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.around > 0.0
+    }
+
     /// The same along three unit vectors.
     #[must_use]
     pub fn along(&self, axes: &[[f64; 3]; 3]) -> Self {
@@ -91,7 +97,7 @@ impl Shape {
     /// Places farther than this along an axis (m) it has no part in.
     #[must_use]
     pub fn reach(&self, axis: usize) -> f64 {
-        let sizes = if self.around > 0.0 { WIDE } else { REACH };
+        let sizes = if self.is_whole() { WIDE } else { REACH };
         sizes * self.size(axis)
     }
 }
