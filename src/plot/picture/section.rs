@@ -99,14 +99,13 @@ impl Cut {
                         DrawnAs::Particles => self.half_thickness(size, &snapshot.symmetry),
                     };
                     let at = self.flatten(&image.point, half, size)?;
-                    let value = if image.flipped { -value } else { value };
                     let bears = self.drawn != Drawn::Body && !snapshot.rigid[body];
                     Some(Cell {
                         at: [at[0], at[1]],
                         depth: at[2],
                         shape,
                         body: names[body],
-                        value: bears.then_some(value),
+                        value: bears.then_some(image.signed(value)),
                     })
                 };
                 cells.extend(images.iter().filter_map(cell));

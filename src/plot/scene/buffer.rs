@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::window::Window;
+use crate::picture::layout::pixels;
 use numerics::ellipsoid::Ellipsoid;
 
 /// Smallest radius of a ball (samples): none falls between samples.
@@ -66,10 +67,10 @@ impl Outline {
         ];
         let height = zz - slope[0] * xz - slope[1] * yz;
         Self {
-            inside: inside.map(single),
-            slope: slope.map(single),
-            height: single(height.max(0.0).sqrt()),
-            reach: [xx, yy, zz].map(|square| single(square.sqrt())),
+            inside: inside.map(pixels),
+            slope: slope.map(pixels),
+            height: pixels(height.max(0.0).sqrt()),
+            reach: [xx, yy, zz].map(|square| pixels(square.sqrt())),
         }
     }
 
@@ -92,14 +93,6 @@ impl Outline {
         let length = right.hypot(down).hypot(rise).max(f32::MIN_POSITIVE);
         [right / length, -down / length]
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "samples need no more digits"
-)]
-fn single(value: f64) -> f32 {
-    value as f32
 }
 
 /// The visible surface at a sample.

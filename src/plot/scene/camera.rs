@@ -2,6 +2,7 @@
 
 use crate::PlotError;
 use crate::snapshots::shape::Shape;
+use numerics::vector::dot;
 
 /// The names of views, with the azimuth and the elevation of the viewer (degrees).
 const NAMES: [(&str, [f64; 2]); 7] = [
@@ -100,10 +101,6 @@ impl Camera {
     pub fn shape(&self, shape: &Shape) -> Shape {
         shape.along(&[self.right, self.up, self.towards])
     }
-}
-
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// Sine and cosine of an angle (degrees), without round-off at right angles.

@@ -114,8 +114,7 @@ impl Survey {
                             *reach = [reach[0].min(at - radius), reach[1].max(at + radius)];
                         }
                         if bears {
-                            let sign = if image.flipped { -1.0 } else { 1.0 };
-                            values.push(sign * grain.value);
+                            values.push(image.signed(grain.value));
                         }
                     }
                 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::bodies::Bodies;
 use super::field::Drawn;
-use super::images::Mirrors;
+use super::images::{Image, Mirrors};
 use super::shape::Shape;
 use super::slice::{mirrored, position_text};
 use super::snapshot::Snapshot;
@@ -26,6 +26,23 @@ pub struct Grain {
     pub body: usize,
     /// The drawn number in its own unit; that of a body is 0.
     pub value: f64,
+}
+
+/// What `make` makes of particles and their images, in their order.
+pub fn of_images<T: Send>(
+    grains: &[Grain],
+    mirrors: &Mirrors,
+    make: impl Fn(&Grain, &Image) -> Option<T> + Sync,
+) -> Vec<T> {
+    let portion = |part: &[Grain]| {
+        let (mut images, mut made) = (Vec::new(), Vec::new());
+        for grain in part {
+            mirrors.reflect(&grain.point, &grain.shape, &mut images);
+            made.extend(images.iter().filter_map(|image| make(grain, image)));
+        }
+        made
+    };
+    grains.par_chunks(PORTION).flat_map_iter(portion).collect()
 }
 
 /// The bodies and the quantity that are drawn.

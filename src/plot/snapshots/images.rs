@@ -15,6 +15,13 @@ pub struct Image {
     pub flipped: bool,
 }
 
+impl Image {
+    /// A drawn number as it is there.
+    pub fn signed(&self, value: f64) -> f64 {
+        if self.flipped { -value } else { value }
+    }
+}
+
 /// Planes at which a model is reflected for a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mirrors {
