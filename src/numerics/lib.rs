@@ -5,6 +5,7 @@ pub mod collector;
 pub mod counter;
 pub mod dimension;
 pub mod dispatch;
+pub mod ellipsoid;
 pub mod exact_sum;
 pub mod extent;
 pub mod gathered_sums;

@@ -248,8 +248,9 @@ particle_fields! {
     hourglass_displacement: Vector,       "m",      State,    -,              OnDemand, CORRECTED;
     /// How much the correction enlarges gradients; 0 where it is ill-conditioned and left out.
     correction_norm: Scalar,              "",       Scratch,  -,              OnDemand, NORMALISED | TOTAL;
-    /// Deformation gradient of a body of the total form, row i column j is the derivative of position i along j at the start.
-    deformation_gradient: Tensor,         "",       Scratch,  STRESS,         OnDemand, TOTAL;
+    /// Deformation gradient of a body that has the total form, row i column j is the derivative of position i along j at the
+    /// start; zero in other bodies.
+    deformation_gradient: Tensor,         "",       Scratch,  STRESS,         IfHeld,   TOTAL;
     /// Modulus of the hourglass control of the total form.
     hourglass_modulus: Scalar,            "Pa",     Scratch,  STRESS,         OnDemand, TOTAL;
     /// Velocity gradient at a stress point at the predicted velocities.

@@ -189,6 +189,14 @@ pub fn write(path: &Path, case: &Case, particles: &Particles, time: f64) {
     );
 }
 
+/// Adds a field of `width` numbers for each particle to a snapshot.
+pub fn add_field(path: &Path, name: &str, values: &[f64], width: usize) {
+    let file = hdf5::File::open_rw(path).expect("a snapshot");
+    let data = file.group("VTKHDF/PointData").unwrap();
+    array(&data, name, values, width);
+    text(&data.dataset(name).unwrap(), "unit", "1");
+}
+
 fn array(group: &hdf5::Group, name: &str, data: &[f64], width: usize) {
     let rows = data.len() / width;
     let shape = if width == 1 {

@@ -122,6 +122,37 @@ fn a_section_shows_one_layer() {
     assert!(complaint.contains("0.500 mm to 1.500 mm"), "{complaint}");
 }
 
+/// A block that has been stretched to three times its length, and squeezed to a third of its height, is solid by its
+/// deformation gradient; where that is zero, there are gaps.
+#[test]
+fn what_is_stretched_is_solid_by_its_deformation_gradient() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.vtkhdf");
+    let mut particles = Particles::default();
+    for k in 0..8_i32.pow(3) {
+        let at = |k: i32| (f64::from(k % 8) + 0.5) * 1e-3;
+        let point = [3.0 * at(k), at(k / 8), at(k / 64) / 3.0];
+        particles.points.push(point);
+        particles.body.push(0);
+    }
+    let case = Case {
+        spacings: vec![1e-3; 2],
+        symmetry: Vec::new(),
+        ..Case::quarter()
+    };
+    let stretch = [3.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0 / 3.0];
+    for (gradient, solid) in [(stretch, true), ([0.0; 9], false)] {
+        write(&path, &case, &particles, 0.0);
+        let gradients = gradient.repeat(particles.body.len());
+        fixture::add_field(&path, "deformation_gradient", &gradients, 9);
+        let patch = patch(&picture(&path, "--section y"), SPHERE);
+        let [long, high] = [patch.columns, patch.rows].map(length);
+        let share = f64::from(patch.count) / (long * high);
+        assert_eq!(share > 0.98, solid, "{share}");
+        assert!(!solid || (long / high / 9.0 - 1.0).abs() < 0.02);
+    }
+}
+
 #[test]
 fn fields_ranges_and_views_are_drawn_in_their_colours() {
     let folder = tempfile::tempdir().unwrap();

@@ -17,6 +17,7 @@ struct Cloud {
     size: Vec<f64>,
     body: Vec<u32>,
     failed: Vec<usize>,
+    deformation: Vec<[f64; 9]>,
 }
 
 const DENSITY: f64 = 8000.0;
@@ -54,6 +55,7 @@ impl Cloud {
             body: &self.body,
             position: &self.position,
             size: &self.size,
+            deformation: &self.deformation,
             included: &included,
             mass: &mass,
             velocity: &self.velocity,
@@ -81,6 +83,29 @@ fn draws() -> impl FnMut() -> f64 {
             .wrapping_add(1);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     }
+}
+
+/// A block of a body that has not torn is one fragment however far it is stretched, also with its image behind a plane; what is
+/// farther than its deformation says is another one. By distance alone each layer is one.
+#[test]
+fn what_is_stretched_hangs_together_by_its_deformation_gradient() {
+    let mut cloud = Cloud::default();
+    cloud.block([0.0; 3], [6, 4, 4], 1.0);
+    cloud.block([6.8, 0.0, 0.0], [3, 4, 4], 1.0);
+    let stretches = [2.5, 0.7, 0.6];
+    for x in &mut cloud.position {
+        *x = [0, 1, 2].map(|a| stretches[a] * x[a]);
+    }
+    let planes = [SymmetryPlane {
+        axis: Axis::X,
+        position: 0.0,
+    }];
+    assert_eq!(cloud.census(&planes, &usual()).fragments.len(), 9);
+    let gradient = [2.5, 0.0, 0.0, 0.0, 0.7, 0.0, 0.0, 0.0, 0.6];
+    cloud.deformation = vec![gradient; cloud.position.len()];
+    let found = cloud.census(&planes, &usual()).fragments;
+    let counts: Vec<_> = found.iter().map(|f| (f.particles, f.copies)).collect();
+    assert_eq!(counts, [(2 * 96, 1), (48, 2)]);
 }
 
 #[test]

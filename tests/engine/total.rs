@@ -5,6 +5,7 @@ use std::sync::Mutex;
 use crate::common::random::Random;
 use crate::common::virtual_ranks::on_each;
 use crate::physics_support::{inline, run_to, run_with, start};
+use comm::Comm;
 use engine::step::Simulation;
 use model::Vec3;
 use numerics::vector::cross;
@@ -163,8 +164,18 @@ fn what_fails_leaves() {
     for (text, stays) in [(tears, false), (block(pull), true)] {
         let mut s = start(inline(&text));
         assert!(s.case.bodies[0].total);
+        s.complete_shown(&Comm::solo());
+        for gradient in &s.particles.deformation_gradient {
+            for (k, part) in gradient.iter().enumerate() {
+                assert!((part - f64::from(u8::from(k % 4 == 0))).abs() < 1e-12);
+            }
+        }
         run_to(&mut s, 8e-6);
         assert_eq!(s.state.total, [stays]);
+        // What snapshots show of it.
+        s.complete_shown(&Comm::solo());
+        let gradients = &s.particles.deformation_gradient;
+        assert!(gradients.iter().all(|f| (f[0] > 0.0) == stays));
     }
 }
 

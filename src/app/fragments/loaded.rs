@@ -25,6 +25,7 @@ pub struct Loaded {
     body: Vec<u32>,
     position: Vec<[f64; 3]>,
     size: Vec<f64>,
+    deformation: Vec<[f64; 9]>,
     mass: Vec<f64>,
     velocity: Vec<[f64; 3]>,
     temperature: Vec<f64>,
@@ -124,6 +125,15 @@ impl Reader<'_> {
         Err(self.wrong(format!("{} ids of {count} particles", ids.len())))
     }
 
+    /// Deformation gradients of all particles; none if the snapshot has none.
+    fn deformation(&self) -> Result<Vec<[f64; 9]>, FragmentsError> {
+        let field = "deformation_gradient";
+        if !self.has(field) {
+            return Ok(Vec::new());
+        }
+        Ok(self.field(field, 9)?.as_chunks::<9>().0.to_vec())
+    }
+
     /// The body of each particle.
     fn body(&self, bodies: usize) -> Result<Vec<u32>, FragmentsError> {
         let index = |value: f64| {
@@ -186,6 +196,7 @@ impl Loaded {
             options: case.ok().and_then(|case| case.fragments),
             missing,
             size: sizes.collect(),
+            deformation: reader.deformation()?,
             symmetry: reader.symmetry()?,
             position: reader.converted(reader.file.points(0..count))?,
             velocity: reader.field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
@@ -227,6 +238,7 @@ impl Loaded {
             body: &self.body,
             position: &self.position,
             size: &self.size,
+            deformation: &self.deformation,
             included,
             mass: &self.mass,
             velocity: &self.velocity,

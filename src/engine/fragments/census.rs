@@ -111,10 +111,9 @@ pub fn find(
 #[must_use]
 pub fn find_alone(matter: &Matter, planes: &[SymmetryPlane], rule: &Rule) -> Census {
     let mirrors = &Mirrors::new(planes);
-    let position = &matter.position[..matter.owned];
     let around = Surroundings {
         mirrors,
-        others: &images(mirrors, position, matter.size, rule.link),
+        others: &images(mirrors, matter, rule.link),
     };
     find(
         (&Comm::solo(), None),

@@ -6,6 +6,8 @@
 
 use rayon::prelude::*;
 
+use numerics::ellipsoid::square;
+use numerics::vector::{minus, norm};
 use particles::Image;
 
 /// Place of a particle or of an image of it.
@@ -13,8 +15,10 @@ use particles::Image;
 pub struct Place {
     /// Position (m).
     pub position: [f64; 3],
-    /// Reach (m).
+    /// Reach (m); the farthest one if that differs by direction.
     pub reach: f64,
+    /// What measures distances in units of the reach, if that differs by direction.
+    pub metric: Option<[f64; 6]>,
     /// The particle or image.
     pub image: Image,
 }
@@ -147,6 +151,17 @@ impl Place {
     #[inline]
     pub fn is_linked(&self, other: &Self) -> bool {
         let range = self.reach + other.reach;
-        distance_squared(&self.position, &other.position) < range * range
+        let distance = distance_squared(&self.position, &other.position);
+        let are_deformed = self.metric.is_some() || other.metric.is_some();
+        distance < range * range && (!are_deformed || self.share(other) + other.share(self) > 1.0)
+    }
+
+    /// Reach towards another place, over the distance of that.
+    fn share(&self, other: &Self) -> f64 {
+        let apart = minus(&other.position, &self.position);
+        match &self.metric {
+            Some(metric) => 1.0 / square(metric, &apart).sqrt(),
+            None => self.reach / norm(&apart),
+        }
     }
 }

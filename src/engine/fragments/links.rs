@@ -68,10 +68,16 @@ impl<'a> Links<'a> {
             let i = image.slot();
             let found = matter.included[i] && matter.size[i] > 0.0;
             let position = mirrors.reflect_position(&matter.position[i], image.mirror_mask());
-            (found && position.iter().all(|x| x.is_finite())).then(|| Place {
-                position,
-                reach: link_reach(rule.link, matter.size[i]),
-                image,
+            (found && position.iter().all(|x| x.is_finite())).then(|| {
+                let gradient = matter.deformation.get(i);
+                let gradient = gradient.map(|f| Mirrors::reflect_tensor(f, image.mirror_mask()));
+                let (reach, deformed) = link_reach(rule.link, matter.size[i], gradient.as_ref());
+                Place {
+                    position,
+                    reach,
+                    metric: deformed.map(|deformed| deformed.metric()),
+                    image,
+                }
             })
         };
         let places = own.chain(others.iter().copied()).filter_map(place);
@@ -277,6 +283,7 @@ pub fn components(points: &[[f64; 3]], reach: f64) -> Vec<Vec<usize>> {
         body: &vec![0; count],
         position: points,
         size: &vec![reach; count],
+        deformation: &[],
         included: &included,
         mass: &[],
         velocity: &[],

@@ -1,6 +1,7 @@
 //! Matter whose fragments are looked for, and by which rule.
 
 use model::{Body, Case, FragmentOptions, Include, edge};
+use numerics::ellipsoid::Ellipsoid;
 use particles::Image;
 use particles::Mirrors;
 
@@ -48,6 +49,8 @@ pub struct Matter<'a> {
     pub position: &'a [[f64; 3]],
     /// Sizes at the start (m), of halo particles too: zero for what is no matter.
     pub size: &'a [f64],
+    /// Deformation gradients, of halo particles too: zero for what has none. Empty if nothing has one.
+    pub deformation: &'a [[f64; 9]],
     /// True if each may belong to a fragment.
     pub included: &'a [bool],
     /// Masses (kg).
@@ -107,22 +110,28 @@ impl FirstSizes {
     }
 }
 
-/// Reach of a particle of a size (m): two are linked within the sum of both.
+/// Reach of a particle of a size (m), and what its deformation gradient has made of that in each direction, if it has one. Two
+/// are linked within the sum of both.
 #[must_use]
-pub fn link_reach(link: f64, size: f64) -> f64 {
-    0.5 * link * size
+pub fn link_reach(link: f64, size: f64, gradient: Option<&[f64; 9]>) -> (f64, Option<Ellipsoid>) {
+    let reach = 0.5 * link * size;
+    let deformed = gradient.and_then(|gradient| Ellipsoid::image(reach, gradient));
+    let farthest = deformed.map_or(reach, |deformed| deformed.farthest());
+    (farthest, deformed)
 }
 
 /// The images behind planes that a rank by itself needs of its particles.
 #[must_use]
-pub fn images(mirrors: &Mirrors, positions: &[[f64; 3]], sizes: &[f64], link: f64) -> Vec<Image> {
+pub fn images(mirrors: &Mirrors, matter: &Matter, link: f64) -> Vec<Image> {
     if mirrors.is_empty() {
         return Vec::new();
     }
-    let farthest = link_reach(link, sizes.iter().copied().fold(0.0, f64::max));
-    let all = positions.iter().zip(sizes).enumerate();
-    let near = all.flat_map(|(i, (position, &size))| {
-        let near = mirrors.near(position, link_reach(link, size) + farthest);
+    let reach = |i: usize| link_reach(link, matter.size[i], matter.deformation.get(i)).0;
+    let reaches: Vec<f64> = (0..matter.owned).map(reach).collect();
+    let farthest = reaches.iter().copied().fold(0.0, f64::max);
+    let all = matter.position.iter().zip(reaches).enumerate();
+    let near = all.flat_map(|(i, (position, reach))| {
+        let near = mirrors.near(position, reach + farthest);
         let mirror_masks = near.subsets(false);
         mirror_masks.map(move |mirror_mask| Image::new(i, mirror_mask))
     });

@@ -17,14 +17,18 @@ pub fn find_in(simulation: &mut Simulation, comm: &Comm, options: &FragmentOptio
         particles,
         search,
         space: Space { partition, halo },
+        sph,
         ..
     } = simulation;
     let rule = Rule::new(options, case.dimension);
     let first = case.bodies.iter().map(|body| FirstSizes::new(case, body));
     let first: Vec<FirstSizes> = first.collect();
     let size_of = |mass: f64, body: u32| first[body as usize].of(mass, rule.dimension);
+    let total = sph.total().filter(|total| !total.is_empty());
+    let mut deformation = total.map_or_else(Vec::new, |total| total.gradients(particles));
     let reach = |particles: &ParticleStore, i: usize| {
-        link_reach(rule.link, size_of(particles.mass[i], particles.body[i]))
+        let size = size_of(particles.mass[i], particles.body[i]);
+        link_reach(rule.link, size, deformation.get(i)).0
     };
     let all = (0..particles.owned()).into_par_iter();
     // same bits in any order: a largest number
@@ -47,6 +51,10 @@ pub fn find_in(simulation: &mut Simulation, comm: &Comm, options: &FragmentOptio
         *included = belongs(options.include, damage(i)).into();
     }
     halo.exchange_values(comm, &mut included);
+    if total.is_some() {
+        deformation.resize(particles.id.len(), [0.0; 9]);
+        halo.exchange_values(comm, &mut deformation);
+    }
     let included: Vec<bool> = included.iter().map(|&is| is != 0).collect();
     let temperature = temperatures(case, particles);
     let matter = Matter {
@@ -56,6 +64,7 @@ pub fn find_in(simulation: &mut Simulation, comm: &Comm, options: &FragmentOptio
         body: &particles.body,
         position: &particles.position,
         size: &sizes,
+        deformation: &deformation,
         included: &included,
         mass: &particles.mass,
         velocity: &particles.velocity,

@@ -2,6 +2,7 @@
 
 use super::accounts::{Accounts, MeasureInputs, TotalsInputs};
 use super::candidate::{Candidate, StepControl};
+use super::contact_stress;
 use super::error::{self, SetupError, StepError};
 use super::fields::{store_of, unused_fields};
 use super::flight::FlightInputs;
@@ -585,6 +586,16 @@ impl Simulation {
     pub fn is_finished(&self) -> bool {
         let run = &self.case.run;
         self.state.time >= run.end_time || run.max_steps.is_some_and(|n| self.state.step >= n)
+    }
+
+    /// Completes the fields that snapshots show and no step needs. Right after a step, before the particles change.
+    /// Collective.
+    pub fn complete_shown(&mut self, comm: &Comm) {
+        contact_stress::measure_in(self, comm);
+        if let Some(total) = self.sph.total() {
+            let gradients = total.gradients(&self.particles);
+            self.particles.deformation_gradient[..gradients.len()].copy_from_slice(&gradients);
+        }
     }
 
     /// Does a task, such as writing files, while the store holds this rank's frozen particles

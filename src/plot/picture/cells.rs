@@ -1,34 +1,23 @@
 //! The bodies that particles fill, and their fields, at every point.
 //!
-//! A particle fills a cell about it of its own size s, the spacing of the volume it has now. Each
-//! has the weight
-//!
-//! ```text
-//! w(r) = ((2 − r²/s²)/(2 − 1/4))⁴   for r < √2 s, else 0 ,
-//! ```
-//!
-//! which is one at r = s/2, and a point is filled if the weights of a body's particles add up to
-//! one. So a lone particle is a ball of diameter s. On a cubic lattice of any dimension the power
-//! makes 2 w(s/√2) and 4 w(√3/2 s) one, too: the free surface is plane, .50 to .55 spacings outside
-//! the outermost layer, and the sum inside is two or more, without holes.
+//! Particles fill places as [their shapes](crate::snapshots::shape) say.
 //!
 //! Bodies are separate: the one with the largest sum fills the point, so that the line between two
 //! bodies in touch is smooth, and a gap between them is not filled by both together.
 
 use super::view::View;
-
-/// Reach of a particle's weight, in its own sizes.
-pub const REACH: f64 = std::f64::consts::SQRT_2;
+use crate::snapshots::shape::{Fill, Shape};
+use numerics::ellipsoid::square;
 
 /// A particle near a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     /// Position along the picture's axes (m).
     pub at: [f64; 2],
-    /// Distance from the plane (m).
+    /// Distance from the plane along its normal (m).
     pub depth: f64,
-    /// Its size s (m).
-    pub size: f64,
+    /// Its shape along the picture's axes and the normal.
+    pub shape: Shape,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn field in its own unit; none for rigid bodies.
@@ -39,21 +28,13 @@ impl Cell {
     /// `true` if it counts for the plane: if that cuts the particle by itself, or is half-way
     /// between two layers, which may have come closer since their sizes were the distance.
     pub fn is_cut(&self) -> bool {
-        self.depth.abs() <= 0.75 * self.size
+        self.depth.abs() <= 0.75 * self.shape.size(2)
     }
 
-    /// Squared distance from a place in the plane, in units of the size.
-    fn distance(&self, [x, y]: [f64; 2]) -> f64 {
-        let (dx, dy) = (x - self.at[0], y - self.at[1]);
-        (dx * dx + dy * dy + self.depth * self.depth) / (self.size * self.size)
+    /// Half its size along the picture's axes (m).
+    pub fn radii(&self) -> [f64; 2] {
+        [0, 1].map(|axis| 0.5 * self.shape.size(axis))
     }
-}
-
-/// The weight of a particle at a squared distance in units of its size.
-#[must_use]
-pub fn weight(distance: f64) -> f64 {
-    let rest = ((2.0 - distance) / 1.75).max(0.0);
-    (rest * rest) * (rest * rest)
 }
 
 /// The body and field at a point.
@@ -69,6 +50,8 @@ pub struct Sample {
 #[derive(Debug)]
 pub struct Tiles<'a> {
     cells: &'a [Cell],
+    /// Of each cell: what measures distances from it in units of its size.
+    metrics: Vec<[f64; 6]>,
     view: View,
     /// Edge of a tile (m).
     pitch: f64,
@@ -83,10 +66,15 @@ impl<'a> Tiles<'a> {
     /// Sorts cells, which are in the order of their bodies, into tiles of a view; none is smaller
     /// than `finest` (m).
     pub fn new(cells: &'a [Cell], view: View, finest: f64) -> Self {
-        let mean = cells.iter().map(|cell| cell.size).sum::<f64>() / cells.len().max(1) as f64;
+        let sizes = cells.iter().map(|cell| cell.shape.size(0));
+        let mean = sizes.sum::<f64>() / cells.len().max(1) as f64;
         let pitch = (1.5 * mean).max(finest);
         let mut tiles = Self {
             cells,
+            metrics: cells
+                .iter()
+                .map(|cell| cell.shape.ellipsoid.metric())
+                .collect(),
             view,
             pitch,
             columns: count(view.width() / pitch),
@@ -112,16 +100,16 @@ impl<'a> Tiles<'a> {
     /// Calls `each` with every cell and every tile of `rows` rows that it reaches.
     fn visit(&self, rows: usize, mut each: impl FnMut(u32, usize)) {
         for (index, cell) in (0..).zip(self.cells) {
-            let reach = REACH * cell.size;
-            let span = |at: f64, low: f64, most: usize| {
+            let span = |axis: usize, low: f64, most: usize| {
+                let (at, reach) = (cell.at[axis], cell.shape.reach(axis));
                 let first = ((at - reach - low) / self.pitch).floor().max(0.0);
                 let last = ((at + reach - low) / self.pitch)
                     .floor()
                     .min(most as f64 - 1.0);
                 (first <= last).then(|| tile(first)..=tile(last))
             };
-            let xs = span(cell.at[0], self.view.x[0], self.columns);
-            let ys = span(cell.at[1], self.view.y[0], rows);
+            let xs = span(0, self.view.x[0], self.columns);
+            let ys = span(1, self.view.y[0], rows);
             let (Some(xs), Some(ys)) = (xs, ys) else {
                 continue;
             };
@@ -156,14 +144,14 @@ impl<'a> Tiles<'a> {
     /// The sum of weights of some cells of one body at a place, and their mean field. It is no
     /// number where that of the nearest is none; others without a number have no part in it.
     fn fill(&self, entries: &[u32], at: [f64; 2]) -> (f64, Option<f64>) {
-        let mut fill = 0.0;
+        let mut fill = Fill::default();
         let (mut sum, mut share) = (0.0, 0.0);
         let mut nearest = (f64::INFINITY, None);
         for &k in entries {
             let cell = &self.cells[k as usize];
-            let distance = cell.distance(at);
-            let w = weight(distance);
-            fill += w;
+            let from = [at[0] - cell.at[0], at[1] - cell.at[1], -cell.depth];
+            let distance = square(&self.metrics[k as usize], &from);
+            let w = fill.add(&cell.shape, distance);
             if distance < nearest.0 {
                 nearest = (distance, cell.value);
             }
@@ -179,7 +167,7 @@ impl<'a> Tiles<'a> {
                 own
             }
         });
-        (fill, value)
+        (fill.level(), value)
     }
 }
 
@@ -211,7 +199,7 @@ mod tests {
         Cell {
             at,
             depth,
-            size: 1.0,
+            shape: Shape::ball(1.0),
             body,
             value: Some(at[0]),
         }
@@ -226,7 +214,7 @@ mod tests {
             for j in 0..8 {
                 for k in 0..if flat { 1 } else { 8 } {
                     let depth = if flat { 0.0 } else { at(k) + shift };
-                    if depth.abs() < REACH {
+                    if depth.abs() < Shape::ball(1.0).reach(2) {
                         cells.push(cell([at(i), at(j)], depth, 0));
                     }
                 }
@@ -260,12 +248,83 @@ mod tests {
     fn a_lone_particle_is_a_ball_of_its_size() {
         for size in [0.5, 1.0, 2.0] {
             let cells = [Cell {
-                size,
+                shape: Shape::ball(size),
                 ..cell([0.0; 2], 0.0, 0)
             }];
             let tiles = Tiles::new(&cells, VIEW, 0.01);
             assert!(tiles.sample([0.499 * size, 0.0]).is_some());
             assert!(tiles.sample([0.0, 0.501 * size]).is_none());
+        }
+    }
+
+    /// A block stretched to two and a half times its length, squeezed to two fifths of its thickness and sheared has
+    /// neither gaps nor another surface than its own.
+    #[test]
+    fn what_is_stretched_and_sheared_has_no_gaps() {
+        let gradient = [2.5, 0.6, 0.3, 0.0, 1.0, 0.5, 0.0, 0.0, 0.4];
+        let image = |at: [f64; 3]| {
+            [0, 1, 2].map(|a| (0..3).map(|b| gradient[3 * a + b] * at[b]).sum::<f64>())
+        };
+        let shape = Shape::image(1.0, &gradient, 3).unwrap();
+        for shift in [0.0, 0.2, 0.5] {
+            let mut cells = Vec::new();
+            for k in 0..512 {
+                let at = [k % 8, k / 8 % 8, k / 64].map(|k| f64::from(k) - 3.5);
+                let [x, y, z] = image([at[0], at[1], at[2] + shift]);
+                cells.push(Cell {
+                    shape,
+                    ..cell([x, y], z, 0)
+                });
+            }
+            let wide = View {
+                x: [-12.0, 12.0],
+                y: [-6.0, 6.0],
+            };
+            let tiles = Tiles::new(&cells, wide, 0.01);
+            for k in 0..=100 {
+                for l in 0..=100 {
+                    let [a, b] = [k, l].map(|k| f64::from(k) * 0.1 - 5.0);
+                    let [x, y, _] = image([a, b, 0.0]);
+                    let outside = a.abs().max(b.abs()) - 4.0;
+                    let is_corner = a.abs().min(b.abs()) > 3.05;
+                    if outside.abs() > 0.06 && !is_corner {
+                        assert_eq!(tiles.sample([x, y]).is_some(), outside < 0.0, "{a} {b}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Disorder leaves holes between balls, but not in a body that has not torn; its surface stays.
+    #[test]
+    fn disorder_without_tears_is_solid() {
+        let unit = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let whole = Shape::image(1.0, &unit, 3).unwrap();
+        for (shape, solid) in [(whole, true), (Shape::ball(1.0), false)] {
+            let mut seed = 1_u32;
+            let mut cells = Vec::new();
+            for k in 0..1000 {
+                let [x, y, z] = [k % 10, k / 10 % 10, k / 100].map(|k: i32| {
+                    seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                    f64::from(k) - 4.5 + 0.8 * (f64::from(seed >> 8) / f64::from(1 << 24) - 0.5)
+                });
+                cells.push(Cell {
+                    shape,
+                    ..cell([x, y], z, 0)
+                });
+            }
+            let tiles = Tiles::new(&cells, VIEW, 0.01);
+            let mut holes = 0;
+            for k in 0..=200 {
+                for l in 0..=200 {
+                    let at = [k, l].map(|k| f64::from(k) * 0.06 - 6.0);
+                    let outside = at[0].abs().max(at[1].abs()) - 5.0;
+                    let is_filled = tiles.sample(at).is_some();
+                    holes += usize::from(outside < -0.5 && !is_filled);
+                    assert!(outside < 0.55 || !is_filled, "{at:?}");
+                }
+            }
+            assert_eq!(holes == 0, solid, "{holes}");
         }
     }
 

@@ -113,7 +113,7 @@ impl Figure<'_> {
         };
         let scale = f64::from(frame.width) / view.width();
         for cell in &section.cells {
-            let radius = pixels(0.5 * cell.size * scale);
+            let radius = pixels(cell.radii()[0] * scale);
             let at = metres.at(cell.at[0], cell.at[1]);
             let sample = Sample {
                 body: cell.body,

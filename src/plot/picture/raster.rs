@@ -165,6 +165,7 @@ fn mean(sum: usize) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::snapshots::shape::Shape;
 
     const FRAME: Frame = Frame {
         left: 0.0,
@@ -184,7 +185,7 @@ mod tests {
                 origin[1] + f64::from(k / 4) + 0.5,
             ],
             depth: 0.0,
-            size: 1.0,
+            shape: Shape::ball(1.0),
             body,
             value: None,
         })

@@ -3,14 +3,15 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::cells::{Cell, REACH};
+use super::cells::Cell;
 use super::view::View;
 use crate::PlotError;
 use crate::snapshots::field::Drawn;
 use crate::snapshots::images::{Image, Mirrors};
 use crate::snapshots::plane::Plane;
+use crate::snapshots::shape::Shape;
 use crate::snapshots::slice::{NUDGE, mirrored, slice};
-use crate::snapshots::snapshot::{LARGEST, Snapshot};
+use crate::snapshots::snapshot::Snapshot;
 use crate::units::Readable;
 use model::{Axis, SymmetryPlane};
 
@@ -61,8 +62,9 @@ impl Cut {
         let planes = self.mirrors(snapshot);
         let mirrors = Mirrors::new(planes.clone(), &self.drawn);
         let coarsest = snapshot.coarsest();
+        let axes = self.plane.axes();
         let reach = match self.drawn_as {
-            DrawnAs::Cut => REACH * LARGEST * coarsest,
+            DrawnAs::Cut => snapshot.reach(),
             DrawnAs::Particles => self.thickness.unwrap_or(2.0 * coarsest),
         };
         let mut cells = Vec::new();
@@ -75,34 +77,35 @@ impl Cut {
             }
             let rows = chunk.start + near.start..chunk.start + near.end;
             let bodies = snapshot.body_of(rows.clone())?;
-            let sizes = match self.drawn_as {
-                DrawnAs::Cut => snapshot.sizes(rows.clone(), &bodies)?,
-                DrawnAs::Particles => snapshot.first_sizes(rows.clone(), &bodies)?,
+            let sizes = snapshot.first_sizes(rows.clone(), &bodies)?;
+            let shapes = match self.drawn_as {
+                DrawnAs::Cut => snapshot.shapes(rows.clone(), &bodies)?,
+                DrawnAs::Particles => sizes.iter().copied().map(Shape::ball).collect(),
             };
             let values = self.drawn.values(snapshot, rows.clone())?;
             let bearers = self.drawn.bearers(snapshot, rows)?;
             let all = points[near]
                 .iter()
                 .zip(bodies)
-                .zip(sizes)
+                .zip(sizes.into_iter().zip(shapes))
                 .zip(values)
                 .zip(bearers);
-            for ((((point, body), size), value), _) in all.filter(|(_, bears)| *bears) {
-                let half = match self.drawn_as {
-                    DrawnAs::Cut => REACH * size,
-                    DrawnAs::Particles => self.half_thickness(size, &snapshot.symmetry),
-                };
-                mirrors.reflect(point, &mut images);
+            for ((((point, body), (size, shape)), value), _) in all.filter(|(_, bears)| *bears) {
+                mirrors.reflect(point, &shape, &mut images);
                 let cell = |image: &Image| {
+                    let shape = image.shape.along(&axes);
+                    let half = match self.drawn_as {
+                        DrawnAs::Cut => shape.reach(2),
+                        DrawnAs::Particles => self.half_thickness(size, &snapshot.symmetry),
+                    };
                     let at = self.flatten(&image.point, half, size)?;
-                    let value = if image.flipped { -value } else { value };
                     let bears = self.drawn != Drawn::Body && !snapshot.rigid[body];
                     Some(Cell {
                         at: [at[0], at[1]],
                         depth: at[2],
-                        size,
+                        shape,
                         body: names[body],
-                        value: bears.then_some(value),
+                        value: bears.then_some(image.signed(value)),
                     })
                 };
                 cells.extend(images.iter().filter_map(cell));
@@ -227,8 +230,7 @@ pub fn view(sections: &[Section]) -> View {
     let mut reach = [none; 2];
     let cells = sections.iter().flat_map(|s| &s.cells);
     for cell in cells.filter(|cell| cell.is_cut()) {
-        let radius = 0.5 * cell.size;
-        for (span, at) in reach.iter_mut().zip(cell.at) {
+        for ((span, at), radius) in reach.iter_mut().zip(cell.at).zip(cell.radii()) {
             *span = [span[0].min(at - radius), span[1].max(at + radius)];
         }
     }
@@ -241,7 +243,7 @@ pub fn view(sections: &[Section]) -> View {
 /// Numbers of the bodies that a view of some sections shows, in ascending order.
 pub fn bodies(sections: &[Section], view: &View) -> Vec<usize> {
     let cells = sections.iter().flat_map(|s| &s.cells);
-    let visible = cells.filter(|c| c.is_cut() && view.shows(c.at, 0.5 * c.size));
+    let visible = cells.filter(|c| c.is_cut() && view.shows(c.at, c.radii()));
     let bodies: BTreeSet<usize> = visible.map(|cell| cell.body).collect();
     bodies.into_iter().collect()
 }

@@ -122,7 +122,7 @@ fn grid(
 /// The particles that a view shows, the nearest to the plane last.
 fn particles(section: &Section, view: &View) -> Vec<Row> {
     let seen = section.cells.iter();
-    let seen = seen.filter(|cell| view.shows(cell.at, 0.5 * cell.size));
+    let seen = seen.filter(|cell| view.shows(cell.at, cell.radii()));
     let row = |cell: &Cell| {
         let (body, value) = (cell.body, cell.value);
         (cell.at, Sample { body, value })

@@ -36,9 +36,10 @@ impl View {
     }
 
     /// `true` if a disc reaches into it.
-    pub fn shows(&self, at: [f64; 2], radius: f64) -> bool {
-        let within = |at: f64, span: [f64; 2]| at + radius > span[0] && at - radius < span[1];
-        within(at[0], self.x) && within(at[1], self.y)
+    pub fn shows(&self, at: [f64; 2], radii: [f64; 2]) -> bool {
+        let within =
+            |k: usize, span: [f64; 2]| at[k] + radii[k] > span[0] && at[k] - radii[k] < span[1];
+        within(0, self.x) && within(1, self.y)
     }
 
     pub fn width(&self) -> f64 {

@@ -8,6 +8,7 @@ use crate::picture::layout::pixels;
 use crate::style::Style;
 use model::readable::shown;
 use model::{Case, Region, SymmetryPlane};
+use numerics::vector::norm;
 
 /// Colour of symmetry planes.
 pub const SYMMETRY: Rgb = [0, 130, 130];
@@ -93,10 +94,6 @@ pub fn velocities(case: &Case) -> Vec<Flight> {
     let fastest = all.iter().fold(0.0, |most: f64, (.., v)| most.max(norm(v)));
     let moves = |(.., v): &Flight| norm(v) > SLOW * fastest;
     all.into_iter().filter(moves).collect()
-}
-
-fn norm(v: &[f64; 3]) -> f64 {
-    v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }
 
 /// An arrow for each velocity, as long as it is fast, with its speed if `named`; towards the viewer a

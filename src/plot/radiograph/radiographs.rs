@@ -3,8 +3,6 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use rayon::prelude::*;
-
 use super::spread::{Masses, REACH, Spot};
 use crate::PlotError;
 use crate::canvas::{Canvas, Rgb};
@@ -20,7 +18,7 @@ use crate::scene::survey::{Numbered, Survey};
 use crate::sequence::Sequence;
 use crate::snapshots::bodies::Bodies;
 use crate::snapshots::field::Drawn;
-use crate::snapshots::grains::{Grain, PORTION, Selection};
+use crate::snapshots::grains::{Selection, of_images};
 use crate::snapshots::plane::Plane;
 use crate::snapshots::sample::Sampled;
 use crate::snapshots::snapshot::Snapshot;
@@ -132,23 +130,15 @@ impl Radiographs {
         let mut masses = Masses::new(size, view);
         for rows in snapshot.chunks() {
             let grains = self.selection.masses(&snapshot, numbers, rows)?;
-            let portion = |part: &[Grain]| {
-                let mut images = Vec::new();
-                let mut spots = Vec::new();
-                for grain in part {
-                    mirrors.reflect(&grain.point, &mut images);
-                    spots.extend(images.iter().map(|image| {
-                        let [right, up, _] = self.camera.project(&image.point);
-                        Spot {
-                            at: [right, up],
-                            size: grain.size,
-                            mass: grain.value,
-                        }
-                    }));
-                }
-                spots
-            };
-            let spots: Vec<Spot> = grains.par_chunks(PORTION).flat_map_iter(portion).collect();
+            let spots = of_images(&grains, &mirrors, |grain, image| {
+                let [right, up, _] = self.camera.project(&image.point);
+                let shape = self.camera.shape(&image.shape);
+                Some(Spot {
+                    at: [right, up],
+                    size: [0, 1].map(|axis| shape.size(axis)),
+                    mass: grain.value,
+                })
+            });
             masses.add(&spots);
         }
         Ok(masses)

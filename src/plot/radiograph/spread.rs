@@ -1,7 +1,7 @@
 //! Mass per area from particles.
 //!
 //! A particle of size s is spread by the product of two quadratic B-splines over a square of 3 s a
-//! side. On a lattice of spacing s along the picture's axes they add up to one at every point, so
+//! side; one that has been deformed has a size along each of the picture's axes. On a lattice of spacing s along the picture's axes they add up to one at every point, so
 //! that bodies of even thickness are even in the picture. A pixel takes the integral over its own
 //! area, so that none of the mass within the frame is lost, however small particles are.
 //!
@@ -25,8 +25,8 @@ pub const REACH: f64 = 1.5;
 pub struct Spot {
     /// Position: to the right and upwards (m).
     pub at: [f64; 2],
-    /// Its size s (m).
-    pub size: f64,
+    /// Its size s along both (m).
+    pub size: [f64; 2],
     /// kg.
     pub mass: f64,
 }
@@ -74,7 +74,7 @@ impl Masses {
                 (view.y[1] - spot.at[1]) / pitch[1],
             ]
         };
-        let reach = |spot: &Spot, k: usize| REACH * spot.size / pitch[k];
+        let reach = |spot: &Spot, k: usize| REACH * spot.size[k] / pitch[k];
         let touched = |spot: &Spot| {
             let [x, y] = in_pixels(spot);
             let own = pixels(y, reach(spot, 1), rows);
@@ -98,7 +98,7 @@ impl Masses {
             for &index in &bands[band] {
                 let spot = &spots[index];
                 let [x, y] = in_pixels(spot);
-                let [wide, high] = pitch.map(|pitch| spot.size / pitch);
+                let [wide, high] = [0, 1].map(|k| spot.size[k] / pitch[k]);
                 let across = pixels(x, reach(spot, 0), columns);
                 shares.clear();
                 shares.extend(across.clone().map(|k| share(k, x, wide)));
@@ -168,7 +168,7 @@ mod tests {
                         2.0 + 0.029_73 * f64::from(k),
                         2.0 + 0.005 * f64::from(k % 7),
                     ],
-                    size,
+                    size: [size; 2],
                     mass: 0.5,
                 })
                 .collect();
@@ -187,7 +187,7 @@ mod tests {
                 for j in -3..14 {
                     spots.push(Spot {
                         at: [0.5 * f64::from(i) + shift, 0.5 * f64::from(j) + shift],
-                        size: 0.5,
+                        size: [0.5; 2],
                         mass: 0.25,
                     });
                 }

@@ -1,4 +1,4 @@
-//! The nearest ball to the viewer at each sample of a panel.
+//! The nearest ball, or ellipsoid that it has been deformed to, to the viewer at each sample of a panel.
 //!
 //! A sample holds one number: the distance from the viewer in its upper half, the index of the ball
 //! in the lower. The least of these numbers is the same in any order, so that all threads may draw
@@ -10,6 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::window::Window;
+use crate::picture::layout::pixels;
+use numerics::ellipsoid::Ellipsoid;
 
 /// Smallest radius of a ball (samples): none falls between samples.
 const LEAST: f32 = 0.75;
@@ -25,11 +27,72 @@ pub const NOBODY: u16 = u16::MAX;
 pub struct Ball {
     /// Its middle: to the right, down, towards the viewer.
     pub at: [f32; 3],
-    pub radius: f32,
+    pub outline: Outline,
     /// The drawn number.
     pub value: f32,
     /// Number of its body in the picture.
     pub body: u16,
+}
+
+/// What of a ball or ellipsoid the viewer sees: its surface over a place beside its middle is `b · d ± h √(1 − d · A d)` of the
+/// distance d, to the right and down, towards the viewer.
+#[derive(Debug, Clone, Copy)]
+pub struct Outline {
+    /// Components xx, xy, yy of A.
+    inside: [f32; 3],
+    /// b.
+    slope: [f32; 2],
+    /// h (samples).
+    height: f32,
+    /// How far it reaches to the right, down and towards the viewer (samples).
+    reach: [f32; 3],
+}
+
+impl Outline {
+    /// Of a shape along the picture's axes: to the right, upwards, towards the viewer; `scale` samples are a metre.
+    pub fn new(shape: &Ellipsoid, scale: f32) -> Self {
+        let square = f64::from(scale).powi(2);
+        let part = |a: usize, b: usize| square * shape.component(a, b);
+        let (xx, xy, yy) = (part(0, 0), -part(0, 1), part(1, 1));
+        let thinnest = 0.5 * (xx + yy) - (0.5 * (xx - yy)).hypot(xy);
+        // None falls between samples.
+        let more = (f64::from(LEAST).powi(2) - thinnest).max(0.0);
+        let (xx, yy, zz) = (xx + more, yy + more, part(2, 2) + more);
+        let (xz, yz) = (part(0, 2), -part(1, 2));
+        let area = xx * yy - xy * xy;
+        let inside = [yy / area, -xy / area, xx / area];
+        let slope = [
+            inside[0] * xz + inside[1] * yz,
+            inside[1] * xz + inside[2] * yz,
+        ];
+        let height = zz - slope[0] * xz - slope[1] * yz;
+        Self {
+            inside: inside.map(pixels),
+            slope: slope.map(pixels),
+            height: pixels(height.max(0.0).sqrt()),
+            reach: [xx, yy, zz].map(|square| pixels(square.sqrt())),
+        }
+    }
+
+    /// The middle of the surface over a place beside its middle, and its height over that, towards the viewer; none where
+    /// the place is outside.
+    fn over(&self, dx: f32, dy: f32) -> Option<[f32; 2]> {
+        let [xx, xy, yy] = self.inside;
+        let rest = 1.0 - (xx * dx * dx + 2.0 * xy * dx * dy + yy * dy * dy);
+        let middle = self.slope[0] * dx + self.slope[1] * dy;
+        (rest > 0.0).then(|| [middle, self.height * rest.sqrt()])
+    }
+
+    /// The unit normal of the surface over such a place: to the right and up.
+    fn normal(&self, dx: f32, dy: f32) -> [f32; 2] {
+        let [xx, xy, yy] = self.inside;
+        let [_, rise] = self.over(dx, dy).unwrap_or_default();
+        let square = self.height * self.height;
+        let right = square * (xx * dx + xy * dy) - rise * self.slope[0];
+        let down = square * (xy * dx + yy * dy) - rise * self.slope[1];
+        let length = right.hypot(down).hypot(rise).max(f32::MIN_POSITIVE);
+        [right / length, -down / length]
+    }
 }
 
 /// The visible surface at a sample.
@@ -121,25 +184,25 @@ impl Buffer {
 /// Marks the samples where a ball is the nearest so far.
 fn mark(nearest: &[AtomicU64], window: &Window, ball: &Ball, index: usize) {
     let [x, y, depth] = ball.at;
-    let radius = ball.radius.max(LEAST);
+    let [right, down, towards] = ball.outline.reach;
     let limit = window.limit([x, y]);
-    let change = window.change(radius);
-    if depth - radius >= limit + change {
+    let change = window.change(right.hypot(down));
+    if depth - towards >= limit + change {
         return;
     }
-    let is_cut = depth + radius > limit - change;
-    let columns = span(x, radius, window.columns);
-    for row in span(y, radius, window.rows) {
+    let is_cut = depth + towards > limit - change;
+    let columns = span(x, right, window.columns);
+    for row in span(y, down, window.rows) {
         let line = &nearest[row * window.columns..(row + 1) * window.columns];
         for column in columns.clone() {
             let at = window.sample(column, row);
-            let Some(height) = height(radius, at[0] - x, at[1] - y) else {
+            let Some([middle, height]) = ball.outline.over(at[0] - x, at[1] - y) else {
                 continue;
             };
-            let mut top = depth + height;
+            let mut top = depth + middle + height;
             if is_cut {
                 let limit = window.limit(at);
-                if depth - height >= limit {
+                if depth + middle - height >= limit {
                     continue;
                 }
                 top = top.min(limit);
@@ -152,24 +215,17 @@ fn mark(nearest: &[AtomicU64], window: &Window, ball: &Ball, index: usize) {
     }
 }
 
-/// The height of the surface of a ball over its middle towards the viewer, at a point beside it.
-fn height(radius: f32, dx: f32, dy: f32) -> Option<f32> {
-    let rest = radius * radius - (dx * dx + dy * dy);
-    (rest > 0.0).then(|| rest.sqrt())
-}
-
 /// The visible surface of a ball at a sample where its surface, or the plane that cuts it, is at a
 /// depth.
 fn look(ball: &Ball, at: [f32; 2], depth: f32, window: &Window) -> Seen {
-    let radius = ball.radius.max(LEAST);
     let (dx, dy) = (at[0] - ball.at[0], at[1] - ball.at[1]);
     // The same to the last bit as where it was drawn: what is higher has been cut.
-    let height = height(radius, dx, dy).unwrap_or(0.0);
-    let [right, up] = if ball.at[2] + height > depth {
+    let [middle, height] = ball.outline.over(dx, dy).unwrap_or_default();
+    let [right, up] = if ball.at[2] + middle + height > depth {
         let [right, up, _] = window.limiting(at);
         [right, up]
     } else {
-        [dx / radius, -dy / radius]
+        ball.outline.normal(dx, dy)
     };
     #[expect(
         clippy::cast_possible_truncation,
@@ -248,8 +304,8 @@ mod tests {
         assert_eq!(parts(u64::MAX).1, None);
     }
 
-    /// A ball in the middle of a panel of 40 × 40 samples that shows 40 m, cut or whole.
-    fn ball(slopes: &[Vec<Slope>]) -> (Window, Buffer) {
+    /// A shape in the middle of a panel of 40 × 40 samples that shows 40 m, cut or whole.
+    fn drawn(shape: &Ellipsoid, slopes: &[Vec<Slope>]) -> (Window, Buffer) {
         let view = View {
             x: [-20.0, 20.0],
             y: [-20.0, 20.0],
@@ -258,7 +314,7 @@ mod tests {
         let mut buffer = Buffer::new(&window);
         let ball = Ball {
             at: [0.0; 3],
-            radius: 12.3,
+            outline: Outline::new(shape, 1.0),
             value: 1.0,
             body: 3,
         };
@@ -268,7 +324,8 @@ mod tests {
 
     #[test]
     fn a_ball_is_round_and_a_plane_cuts_it_flat() {
-        let (window, buffer) = ball(&[]);
+        let ball = Ellipsoid::ball(12.3);
+        let (window, buffer) = drawn(&ball, &[]);
         for (k, seen) in buffer.seen.iter().enumerate() {
             let [x, y] = window.sample(k % 40, k / 40);
             assert_eq!(seen.body == 3, x.hypot(y) < 12.3);
@@ -288,9 +345,39 @@ mod tests {
             along: [0.0; 2],
             normal: [0.0, 0.0, 1.0],
         };
-        let (_, buffer) = ball(&[vec![facing]]);
+        let (_, buffer) = drawn(&ball, &[vec![facing]]);
         let highest = buffer.seen.iter().map(|s| s.depth).fold(-1e9, f32::max);
         assert_eq!(highest, 2.0);
         assert_eq!(buffer.seen[20 * 40 + 20].normal(), [0.0, 0.0, 1.0]);
+    }
+
+    /// Surface and normal are those of the ball, deformed.
+    #[test]
+    fn what_is_deformed_is_seen_as_the_image_of_a_ball() {
+        let gradient = [1.3, 0.4, -0.2, 0.0, 0.7, 0.3, 0.5, 0.0, 1.0];
+        let shape = Ellipsoid::image(10.0, &gradient).unwrap();
+        let (window, buffer) = drawn(&shape, &[]);
+        let metric = shape.metric();
+        let mut count = 0;
+        for (k, seen) in buffer.seen.iter().enumerate().filter(|(_, s)| s.body == 3) {
+            let [x, y] = window.sample(k % 40, k / 40);
+            let at = [x, -y, seen.depth].map(f64::from);
+            assert!((numerics::ellipsoid::square(&metric, &at) - 1.0).abs() < 1e-4);
+            let [xx, yy, zz, xy, xz, yz] = metric;
+            let slope = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+                .map(|row| row.iter().zip(at).map(|(m, x)| m * x).sum::<f64>());
+            let length = slope.iter().map(|n| n * n).sum::<f64>().sqrt();
+            for (part, slope) in seen.normal().into_iter().zip(slope) {
+                assert!((f64::from(part) - slope / length).abs() < 0.03);
+            }
+            count += 1;
+        }
+        // The area of the outline: π √(xx yy − xy²) of its squares.
+        let [xx, yy, xy] = [(0, 0), (1, 1), (0, 1)].map(|(a, b)| shape.component(a, b));
+        let area = std::f64::consts::PI * (xx * yy - xy * xy).sqrt();
+        assert!(
+            (f64::from(count) / area - 1.0).abs() < 0.02,
+            "{count} {area}"
+        );
     }
 }

@@ -1,6 +1,8 @@
 //! From where a model is seen.
 
 use crate::PlotError;
+use crate::snapshots::shape::Shape;
+use numerics::vector::dot;
 
 /// The names of views, with the azimuth and the elevation of the viewer (degrees).
 const NAMES: [(&str, [f64; 2]); 7] = [
@@ -93,10 +95,12 @@ impl Camera {
     pub fn project(&self, point: &[f64; 3]) -> [f64; 3] {
         [&self.right, &self.up, &self.towards].map(|axis| dot(axis, point))
     }
-}
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    /// A shape along the same axes.
+    #[must_use]
+    pub fn shape(&self, shape: &Shape) -> Shape {
+        shape.along(&[self.right, self.up, self.towards])
+    }
 }
 
 /// Sine and cosine of an angle (degrees), without round-off at right angles.

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::buffer::{Ball, Buffer, Seen};
+use super::buffer::{Ball, Buffer, Outline, Seen};
 use super::camera::Camera;
 use super::cut::Cuts;
 use super::occlusion::openness;
@@ -11,8 +11,8 @@ use super::window::Window;
 use crate::PlotError;
 use crate::canvas::Rgb;
 use crate::picture::view::View;
-use crate::snapshots::grains::{Grain, PORTION, Selection};
-use crate::snapshots::images::Mirrors;
+use crate::snapshots::grains::{Grain, Selection, of_images};
+use crate::snapshots::images::Image;
 use crate::snapshots::snapshot::Snapshot;
 
 /// Samples along either axis of a pixel, where memory allows.
@@ -99,43 +99,30 @@ impl Stage<'_> {
         for rows in snapshot.chunks() {
             let grains = self.selection.grains(snapshot, numbers, rows)?;
             for (layer, buffer) in buffers.iter_mut().enumerate() {
-                let of_layer = |grain: &&Grain| {
-                    let index = self.transparent.iter().position(|&b| b == grain.body);
-                    index.map_or(0, |index| index + 1) == layer
-                };
-                buffer.draw(&self.balls(&grains, of_layer, &mirrors, window), window);
+                let balls = of_images(&grains, &mirrors, |grain, image| {
+                    (self.layer(grain.body) == layer).then(|| self.ball(grain, image, window))
+                });
+                buffer.draw(&balls, window);
             }
         }
         Ok(buffers)
     }
 
-    /// Some particles and their images as balls.
-    fn balls(
-        &self,
-        grains: &[Grain],
-        selection: impl Fn(&&Grain) -> bool + Sync,
-        mirrors: &Mirrors,
-        window: &Window,
-    ) -> Vec<Ball> {
-        let portion = |part: &[Grain]| {
-            let mut images = Vec::new();
-            let mut balls = Vec::new();
-            for grain in part.iter().filter(&selection) {
-                mirrors.reflect(&grain.point, &mut images);
-                balls.extend(images.iter().map(|image| Ball {
-                    at: window.to_samples(self.camera.project(&image.point)),
-                    radius: window.length(RADIUS * grain.size),
-                    value: single(if image.flipped {
-                        -grain.value
-                    } else {
-                        grain.value
-                    }),
-                    body: u16::try_from(grain.body).unwrap_or(u16::MAX - 1),
-                }));
-            }
-            balls
-        };
-        grains.par_chunks(PORTION).flat_map_iter(portion).collect()
+    /// The layer that a body is in.
+    fn layer(&self, body: usize) -> usize {
+        let index = self.transparent.iter().position(|&b| b == body);
+        index.map_or(0, |index| index + 1)
+    }
+
+    /// An image of a particle on its way into the picture.
+    fn ball(&self, grain: &Grain, image: &Image, window: &Window) -> Ball {
+        let shape = self.camera.shape(&image.shape).ellipsoid;
+        Ball {
+            at: window.to_samples(self.camera.project(&image.point)),
+            outline: Outline::new(&shape, window.length(RADIUS)),
+            value: single(image.signed(grain.value)),
+            body: u16::try_from(grain.body).unwrap_or(u16::MAX - 1),
+        }
     }
 }
 

@@ -99,7 +99,7 @@ impl Survey {
                 let mut values = Vec::new();
                 let mut bodies = BTreeSet::new();
                 for grain in part {
-                    mirrors.reflect(&grain.point, &mut images);
+                    mirrors.reflect(&grain.point, &grain.shape, &mut images);
                     let bears =
                         selection.drawn != Drawn::Body && !selection.bodies.rigid[grain.body];
                     for image in &images {
@@ -108,13 +108,13 @@ impl Survey {
                             continue;
                         }
                         bodies.insert(grain.body);
-                        for (reach, at) in reach.iter_mut().zip(at) {
-                            let radius = self.sizes * grain.size;
+                        let shape = camera.shape(&image.shape);
+                        for (k, (reach, at)) in reach.iter_mut().zip(at).enumerate() {
+                            let radius = self.sizes * shape.size(k);
                             *reach = [reach[0].min(at - radius), reach[1].max(at + radius)];
                         }
                         if bears {
-                            let sign = if image.flipped { -1.0 } else { 1.0 };
-                            values.push(sign * grain.value);
+                            values.push(image.signed(grain.value));
                         }
                     }
                 }

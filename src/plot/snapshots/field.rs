@@ -6,6 +6,7 @@ use super::snapshot::{FROZEN, Snapshot};
 use crate::PlotError;
 use crate::units::parse_span;
 use model::Axis;
+use numerics::vector::norm;
 
 /// Components of a vector, in the order of the file.
 pub const VECTOR: [&str; 3] = ["x", "y", "z"];
@@ -174,7 +175,7 @@ impl Field {
             Pick::Component(k) => Ok(snapshot.file.scalar(&self.dataset, k, rows)?),
             Pick::Magnitude => {
                 let values = snapshot.file.values(&self.dataset, rows)?;
-                Ok(values.as_chunks::<3>().0.iter().map(magnitude).collect())
+                Ok(values.as_chunks::<3>().0.iter().map(norm).collect())
             }
             Pick::VonMises => {
                 let values = snapshot.file.values(&self.dataset, rows)?;
@@ -273,10 +274,6 @@ fn von_mises_label(dataset: &str, words: &str) -> String {
     } else {
         format!("von Mises {words}")
     }
-}
-
-fn magnitude(v: &[f64; 3]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }
 
 /// √(3/2 S:S) of the deviatoric part S of a stress: the uniaxial stress of equal distortion.

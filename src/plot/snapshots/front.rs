@@ -57,7 +57,7 @@ impl Direction {
 /// the axis.
 ///
 /// Each row is a time (s) and the largest coordinate (m) of the body's largest connected fragment
-/// ([`largest_reaches`]); against the axis the smallest.
+/// ([`largest_reaches`]), or of all of it as long as it has not torn; against the axis the smallest.
 ///
 /// # Errors
 /// [`PlotError::Body`] if there is no such body, [`PlotError::Read`] if a snapshot cannot be read.
@@ -73,20 +73,27 @@ pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<
                 known: snapshot.bodies,
             });
         };
-        let mut points = Vec::new();
+        let (mut points, mut whole) = (Vec::new(), Vec::new());
         for rows in snapshot.chunks() {
             let bodies = snapshot.body_of(rows.clone())?;
             let bearers = Drawn::Body.bearers(&snapshot, rows.clone())?;
-            let all = snapshot.file.points(rows)?.into_iter().zip(bodies);
-            let wanted = all
-                .zip(bearers)
-                .filter(|((_, of), bears)| *bears && *of == wanted);
-            points.extend(wanted.map(|((mut point, _), _)| {
-                point[axis] *= sign;
-                point
-            }));
+            let shapes = snapshot.shapes(rows.clone(), &bodies)?;
+            let all = snapshot.file.points(rows)?.into_iter().zip(shapes);
+            let all = all.zip(bodies).zip(bearers);
+            for (((mut point, shape), of), bears) in all {
+                if bears && of == wanted {
+                    point[axis] *= sign;
+                    points.push(point);
+                    whole.extend((shape.is_whole()).then(|| point[axis] + 0.5 * shape.size(axis)));
+                }
+            }
         }
-        let front = largest_reaches(&points, axis, snapshot.spacings[wanted]);
+        let front = if whole.len() == points.len() {
+            let finite = whole.into_iter().filter(|x| x.is_finite());
+            finite.reduce(f64::max)
+        } else {
+            largest_reaches(&points, axis, snapshot.spacings[wanted])
+        };
         if let Some(front) = front {
             let _ = writeln!(table, "{:?},{:?}", snapshot.time, sign * front);
         }

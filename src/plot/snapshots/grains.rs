@@ -6,7 +6,8 @@ use rayon::prelude::*;
 
 use super::bodies::Bodies;
 use super::field::Drawn;
-use super::images::Mirrors;
+use super::images::{Image, Mirrors};
+use super::shape::Shape;
 use super::slice::{mirrored, position_text};
 use super::snapshot::Snapshot;
 use crate::PlotError;
@@ -19,12 +20,29 @@ pub const PORTION: usize = 8192;
 pub struct Grain {
     /// Position (m).
     pub point: [f64; 3],
-    /// Its size s, the spacing of the volume that it has now (m).
-    pub size: f64,
+    /// Its shape.
+    pub shape: Shape,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn number in its own unit; that of a body is 0.
     pub value: f64,
+}
+
+/// What `make` makes of particles and their images, in their order.
+pub fn of_images<T: Send>(
+    grains: &[Grain],
+    mirrors: &Mirrors,
+    make: impl Fn(&Grain, &Image) -> Option<T> + Sync,
+) -> Vec<T> {
+    let portion = |part: &[Grain]| {
+        let (mut images, mut made) = (Vec::new(), Vec::new());
+        for grain in part {
+            mirrors.reflect(&grain.point, &grain.shape, &mut images);
+            made.extend(images.iter().filter_map(|image| make(grain, image)));
+        }
+        made
+    };
+    grains.par_chunks(PORTION).flat_map_iter(portion).collect()
 }
 
 /// The bodies and the quantity that are drawn.
@@ -105,7 +123,7 @@ impl Selection {
     ) -> Result<Vec<Grain>, PlotError> {
         let points = snapshot.file.points(rows.clone())?;
         let bodies = snapshot.body_of(rows.clone())?;
-        let sizes = snapshot.sizes(rows.clone(), &bodies)?;
+        let shapes = snapshot.shapes(rows.clone(), &bodies)?;
         let bearers = self.drawn.bearers(snapshot, rows)?;
         let is_drawn: Vec<bool> = numbers.iter().map(|&n| self.bodies.shows(n)).collect();
         let grain = |k: usize| {
@@ -113,7 +131,7 @@ impl Selection {
             let known = point.iter().all(|c| c.is_finite());
             (bearers[k] && is_drawn[body] && known).then(|| Grain {
                 point,
-                size: sizes[k],
+                shape: shapes[k],
                 body: numbers[body],
                 value: values[k],
             })

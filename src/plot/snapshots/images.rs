@@ -1,6 +1,7 @@
 //! Images of particles at planes of symmetry.
 
 use super::field::Drawn;
+use super::shape::Shape;
 use model::SymmetryPlane;
 
 /// A place where a particle or an image of it is.
@@ -8,8 +9,17 @@ use model::SymmetryPlane;
 pub struct Image {
     /// Position (m).
     pub point: [f64; 3],
+    /// Shape.
+    pub shape: Shape,
     /// `true` if the drawn number has the other sign there.
     pub flipped: bool,
+}
+
+impl Image {
+    /// A drawn number as it is there.
+    pub fn signed(&self, value: f64) -> f64 {
+        if self.flipped { -value } else { value }
+    }
 }
 
 /// Planes at which a model is reflected for a picture.
@@ -37,11 +47,12 @@ impl Mirrors {
         self.planes.iter().map(|(plane, _)| plane)
     }
 
-    /// Fills `images` with a particle and its reflections.
-    pub fn reflect(&self, point: &[f64; 3], images: &mut Vec<Image>) {
+    /// Fills `images` with a particle of a shape and its reflections.
+    pub fn reflect(&self, point: &[f64; 3], shape: &Shape, images: &mut Vec<Image>) {
         images.clear();
         images.push(Image {
             point: *point,
+            shape: *shape,
             flipped: false,
         });
         for (plane, flips) in &self.planes {
@@ -49,6 +60,7 @@ impl Mirrors {
             for n in 0..images.len() {
                 let mut image = images[n];
                 image.point[k] = 2.0 * plane.position - image.point[k];
+                image.shape = image.shape.mirrored(k);
                 image.flipped ^= flips;
                 images.push(image);
             }
@@ -69,7 +81,8 @@ mod tests {
         };
         let mirrors = Mirrors::new(vec![plane(Axis::X), plane(Axis::Y)], &Drawn::Body);
         let mut images = Vec::new();
-        mirrors.reflect(&[1.5, 1.25, 3.0], &mut images);
+        let ball = Shape::ball(1.0);
+        mirrors.reflect(&[1.5, 1.25, 3.0], &ball, &mut images);
         let points: Vec<_> = images.iter().map(|image| image.point).collect();
         let expected = [
             [1.5, 1.25, 3.0],
@@ -78,7 +91,7 @@ mod tests {
             [0.5, 0.75, 3.0],
         ];
         assert_eq!(points, expected);
-        Mirrors::new(Vec::new(), &Drawn::Body).reflect(&[1.5, 1.25, 3.0], &mut images);
+        Mirrors::new(Vec::new(), &Drawn::Body).reflect(&[1.5, 1.25, 3.0], &ball, &mut images);
         assert_eq!(images.len(), 1);
     }
 }

@@ -8,6 +8,7 @@ pub mod grains;
 pub mod images;
 pub mod plane;
 pub mod sample;
+pub mod shape;
 pub mod slice;
 pub mod snapshot;
 pub mod source;

@@ -28,6 +28,16 @@ impl Plane {
         }
     }
 
+    /// Unit vectors to the right and up in the picture, and along the normal.
+    pub fn axes(&self) -> [[f64; 3]; 3] {
+        let [right, up] = self.picture_axes();
+        [right, up, self.axis].map(|axis| {
+            let mut unit = [0.0; 3];
+            unit[axis.index()] = 1.0;
+            unit
+        })
+    }
+
     /// Reads `y=0.1mm`, or `y` without a position.
     pub fn read(text: &str) -> Result<(Axis, Option<f64>), PlotError> {
         let (name, position) = match text.split_once('=') {

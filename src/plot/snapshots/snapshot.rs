@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::extent::{Extent, Mover};
+use super::shape::Shape;
 use crate::PlotError;
 use files::output::h5::read::SnapshotFile;
 use model::{Axis, SymmetryPlane};
@@ -37,11 +38,16 @@ pub struct Snapshot {
     pub symmetry: Vec<SymmetryPlane>,
     /// `true` if particles may be frozen.
     freezes: bool,
+    /// `true` if it holds deformation gradients.
+    deforms: bool,
 }
 
 /// Largest size of a particle in spacings of its body at the start: beyond twice a smoothing length
 /// particles do not know of each other, however thin they are.
-pub const LARGEST: f64 = 4.0;
+const LARGEST: f64 = 4.0;
+
+/// The field of deformation gradients, zero where a body has none.
+const DEFORMATION: &str = "deformation_gradient";
 
 /// The field that marks frozen particles.
 pub const FROZEN: &str = "frozen";
@@ -90,9 +96,12 @@ impl Snapshot {
             return Err(damaged(format!("a model of {dimension} dimensions")));
         };
         let symmetry = symmetry(planes).map_err(damaged)?;
+        let names = file.names()?;
+        let has = |field: &str| names.iter().any(|name| name == field);
         Ok(Self {
             time: file.time()?,
-            freezes: file.names()?.iter().any(|name| name == FROZEN),
+            freezes: has(FROZEN),
+            deforms: has(DEFORMATION) && file.components(DEFORMATION)? == 9,
             file,
             title,
             bodies,
@@ -113,6 +122,13 @@ impl Snapshot {
     /// The coarsest particle spacing (m).
     pub fn coarsest(&self) -> f64 {
         self.coarsest.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Distance beyond which a particle has no part in a place (m).
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        let first = if self.deforms { self.coarsest() } else { 0.0 };
+        Shape::farthest(first, LARGEST * self.coarsest())
     }
 
     /// The rows of the snapshot in portions that fit in memory.
@@ -223,6 +239,26 @@ impl Snapshot {
             .zip(growths)
             .map(|(s, growth)| s * growth)
             .collect())
+    }
+
+    /// Shape of some particles along the axes of the model: what their deformation gradient makes of a ball of
+    /// their first spacing, or a ball of their [size](Self::sizes) where the snapshot holds none.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
+    pub fn shapes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<Shape>, PlotError> {
+        let sizes = self.sizes(rows.clone(), bodies)?.into_iter();
+        if !self.deforms {
+            return Ok(sizes.map(Shape::ball).collect());
+        }
+        let first = self.first_sizes(rows.clone(), bodies)?;
+        let gradients = self.file.values(DEFORMATION, rows)?;
+        let dimension = usize::try_from(self.dimension).unwrap_or(3);
+        let all = sizes.zip(first).zip(gradients.as_chunks::<9>().0);
+        let shape = |((size, first), gradient): ((f64, f64), &[f64; 9])| {
+            Shape::image(first, gradient, dimension).unwrap_or_else(|| Shape::ball(size))
+        };
+        Ok(all.map(shape).collect())
     }
 
     /// Masses of some particles (kg; per metre or square metre of a flat model): those that the

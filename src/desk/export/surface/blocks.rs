@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 
 use super::Triangle;
 use super::cubes::{self, Cube};
-use super::level::{Ball, CELLS, Coordinates, NODES, Nodes, add, levels, node};
+use super::level::{Ball, CELLS, Coordinates, NODES, add, levels, node};
+use plot::Fill;
 
 /// Largest number of a block along an axis, so that nodes are distinct.
 const FARTHEST: f64 = 1e9;
@@ -86,19 +87,19 @@ impl Blocks {
             .get(block + 1)
             .map_or(self.balls.len(), |next| next.1);
         let coordinates = self.coordinates(key);
-        let mut sums: BTreeMap<u32, Nodes> = BTreeMap::new();
+        let mut fills: BTreeMap<u32, Vec<Fill>> = BTreeMap::new();
         for &number in &self.balls[first..end] {
             let ball = &all[number as usize];
-            let nodes = || vec![0.0; NODES * NODES * NODES];
+            let nodes = || vec![Fill::default(); NODES * NODES * NODES];
             add(
                 ball,
                 &coordinates,
-                sums.entry(ball.body).or_insert_with(nodes),
+                fills.entry(ball.body).or_insert_with(nodes),
             );
         }
-        let (bodies, sums): (Vec<u32>, Vec<Nodes>) = sums.into_iter().unzip();
+        let (bodies, fills): (Vec<u32>, Vec<Vec<Fill>>) = fills.into_iter().unzip();
         let mut triangles = Vec::new();
-        for (body, level) in bodies.into_iter().zip(levels(sums)) {
+        for (body, level) in bodies.into_iter().zip(levels(&fills)) {
             cut(&coordinates, &level, |triangle| {
                 triangles.push((body, triangle));
             });
@@ -141,10 +142,10 @@ type Span = [[i32; 2]; 3];
 
 fn span(ball: &Ball, pitch: f64) -> Option<Span> {
     let edge = pitch * CELLS as f64;
-    let reach = ball.reach();
     let mut span = [[0; 2]; 3];
     let mut count = 1.0;
-    for (span, x) in span.iter_mut().zip(ball.centre) {
+    for (axis, span) in span.iter_mut().enumerate() {
+        let (x, reach) = (ball.centre[axis], ball.shape.reach(axis));
         // A cell more on both sides, so that each node in reach is inside whatever is rounded.
         let ends = [x - reach - pitch, x + reach + pitch].map(|x| (x / edge).floor());
         if !ends.iter().all(|end| end.abs() < FARTHEST) {
@@ -172,11 +173,12 @@ fn visit_blocks(span: &Span, mut emit: impl FnMut([i32; 3])) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use plot::Shape;
 
     fn lattice(body: u32, first: usize) -> impl Iterator<Item = Ball> {
         (0..8 * 8 * 6).map(move |n| Ball {
             centre: [n % 8, n / 8 % 8, first + n / 64].map(|k| 1e-3 * k as f64),
-            size: 1e-3,
+            shape: Shape::ball(1e-3),
             body,
         })
     }
@@ -199,7 +201,7 @@ mod tests {
         for body in [0, 1, 2].into_iter().cycle().take(60) {
             balls.push(Ball {
                 centre: [random(), random(), random()].map(|x| 0.012 * x - 0.002),
-                size: 1e-3 * (0.6 + 0.8 * random()),
+                shape: Shape::ball(1e-3 * (0.6 + 0.8 * random())),
                 body,
             });
         }

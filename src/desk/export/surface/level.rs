@@ -1,23 +1,17 @@
 //! The level of a body at the nodes of a block.
 
-use plot::{REACH, weight};
+use numerics::ellipsoid::square;
+use plot::{Fill, Shape};
 
 /// A particle as far as it fills space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     /// Its place (m).
     pub centre: [f64; 3],
-    /// Its size s (m).
-    pub size: f64,
+    /// Its shape.
+    pub shape: Shape,
     /// Number of its body.
     pub body: u32,
-}
-
-impl Ball {
-    /// Reach of its weight (m).
-    pub fn reach(&self) -> f64 {
-        REACH * self.size
-    }
 }
 
 /// Cells along an edge of a block.
@@ -36,25 +30,17 @@ pub fn node(i: usize, j: usize, k: usize) -> usize {
     (k * NODES + j) * NODES + i
 }
 
-/// Adds the weights of a particle to the nodes.
-pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
-    let square = |axis: usize, n: usize| {
-        let distance = (coordinates[axis][n] - ball.centre[axis]) / ball.size;
-        distance * distance
-    };
-    let most = REACH * REACH;
-    for k in 0..NODES {
-        let z = square(2, k);
-        if z >= most {
-            continue;
-        }
-        for j in 0..NODES {
-            let yz = z + square(1, j);
-            if yz >= most {
-                continue;
-            }
-            for i in 0..NODES {
-                sums[node(i, j, k)] += weight(yz + square(0, i));
+/// Adds a particle to what fills the nodes.
+pub fn add(ball: &Ball, coordinates: &Coordinates, fills: &mut [Fill]) {
+    let metric = ball.shape.ellipsoid.metric();
+    let from = |axis: usize, n: usize| coordinates[axis][n] - ball.centre[axis];
+    let near =
+        |axis: usize| (0..NODES).filter(move |&n| from(axis, n).abs() < ball.shape.reach(axis));
+    for k in near(2) {
+        for j in near(1) {
+            for i in near(0) {
+                let from = [from(0, i), from(1, j), from(2, k)];
+                fills[node(i, j, k)].add(&ball.shape, square(&metric, &from));
             }
         }
     }
@@ -62,10 +48,10 @@ pub fn add(ball: &Ball, coordinates: &Coordinates, sums: &mut [f64]) {
 
 /// The level of each body from the sums of all, node by node: of the fourth roots of these, which are
 /// nearly linear near a surface where the sums are steep.
-pub fn levels(mut sums: Vec<Nodes>) -> Vec<Nodes> {
-    for sum in sums.iter_mut().flatten() {
-        *sum = sum.sqrt().sqrt();
-    }
+pub fn levels(fills: &[Vec<Fill>]) -> Vec<Nodes> {
+    let root = |fill: &Fill| fill.level().sqrt().sqrt();
+    let roots = fills.iter().map(|fills| fills.iter().map(root).collect());
+    let sums: Vec<Nodes> = roots.collect();
     let level = |body: usize| {
         let at = |n: usize| {
             let others = sums.iter().enumerate().filter(|(other, _)| *other != body);

@@ -72,11 +72,11 @@ fn balls(frame: &Frame, mirror: bool) -> Result<Vec<Ball>, ExportError> {
     let (mut balls, mut images) = (Vec::new(), Vec::new());
     for rows in snapshot.chunks() {
         let grains = selection.grains(snapshot, &numbers, rows)?;
-        for grain in grains.iter().filter(|grain| grain.size > 0.0) {
-            mirrors.reflect(&grain.point, &mut images);
+        for grain in grains.iter().filter(|grain| grain.shape.size(0) > 0.0) {
+            mirrors.reflect(&grain.point, &grain.shape, &mut images);
             balls.extend(images.iter().map(|image| Ball {
                 centre: image.point,
-                size: grain.size,
+                shape: image.shape,
                 #[expect(
                     clippy::cast_possible_truncation,
                     reason = "bodies are as many as an attribute can name"

@@ -135,7 +135,8 @@ impl TotalBodies {
     }
 
     /// True if no body is of this form any more.
-    fn is_empty(&self) -> bool {
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.others.iter().all(|&other| other)
     }
 
@@ -373,6 +374,23 @@ impl TotalBodies {
             norm(&[row(0), row(1), row(2)]) > far
         };
         norm(&apart) > far && expects(a) && expects(b)
+    }
+
+    /// Deformation gradients of this rank's particles: zero of bodies that have another form, whose fields no step writes.
+    #[must_use]
+    pub fn gradients(&self, particles: &ParticleStore) -> Vec<[f64; 9]> {
+        let gradient = |i: usize| {
+            let holds = self.holds(particles.body[i] as usize);
+            if holds {
+                particles.deformation_gradient[i]
+            } else {
+                [0.0; 9]
+            }
+        };
+        (0..particles.owned())
+            .into_par_iter()
+            .map(gradient)
+            .collect()
     }
 
     /// Sorted images and their neighbours in the initial configuration.

@@ -6,7 +6,6 @@ use std::time::Instant;
 use super::Driver;
 use crate::output::{OutputError, RunFolder, on_root, series, snapshot};
 use comm::Comm;
-use engine::step::contact_stress;
 
 impl Driver<'_> {
     /// Writes the snapshots that are due after a `step` between two times (s), or all of them, and the
@@ -20,7 +19,7 @@ impl Driver<'_> {
         let begun = Instant::now();
         let is_due = |plan: &snapshot::Plan| step.is_none_or(|[a, b]| plan.is_due(a, b));
         let due: Vec<bool> = self.plans.iter().map(is_due).collect();
-        contact_stress::measure_in(&mut self.simulation, comm);
+        self.simulation.complete_shown(comm);
         let mut chosen = self.plans.iter().zip(&due).filter(|(_, due)| **due);
         let labels = if census_due || chosen.any(|(plan, _)| plan.shows_fragments()) {
             self.find_fragments(comm, census_due)?
