@@ -276,6 +276,9 @@ impl Material {
             for k in 0..LANES {
                 now.plastic_increment[k] = batch.plastic_strain[k] - strain[k];
             }
+            if self.failure.asks_hardening() {
+                self.set_hardening(batch, &mut now);
+            }
             let bulk_modulus = self.bulk_modulus(batch, &response);
             self.failure.fail(batch, &mut now, &bulk_modulus);
         }
@@ -310,6 +313,20 @@ impl Material {
             now.temperature =
                 self.torn_temperatures(thermal, state, &batch.pressure, &response.pressure);
             now.thermal = *thermal.constants();
+        }
+    }
+
+    /// How the flow stress of what has flowed hardens, with the heat of the flow.
+    #[inline(never)]
+    fn set_hardening(&self, batch: &PointBatch, now: &mut Conditions) {
+        let heat = 1.0 - self.stored_share();
+        for k in 0..LANES {
+            if now.plastic_increment[k] > 0.0 {
+                let [by_strain, by_temperature] = self.strength.hardening(batch, k, now);
+                let work = point::equivalent_stress(batch, k) / batch.density[k];
+                let warming = heat * work / now.thermal.specific_heat;
+                now.hardening[k] = by_strain + by_temperature * warming;
+            }
         }
     }
 

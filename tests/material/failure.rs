@@ -5,9 +5,9 @@
 
 use crate::support::{batch, equivalent, material, step, stress};
 use material::{
-    AfterSpall, Effect, Elastic, Eos, JohnsonCookFailure, LANES, Linear, LinearForm, Material,
-    Molten, PlasticStrain, PrincipalStress, RateForm, Spall, Strength, Thermal, ThermalConstants,
-    VonMises,
+    AfterSpall, Coupling, Effect, Elastic, Eos, JohnsonCookFailure, LANES, Linear, LinearForm,
+    Material, Molten, PlasticStrain, PrincipalStress, RateForm, Spall, Strength, Thermal,
+    ThermalConstants, VonMises, library,
 };
 use nalgebra::Matrix3;
 
@@ -45,6 +45,7 @@ fn ductile([d1, d2, d3, d4, d5]: [f64; 5]) -> JohnsonCookFailure {
         rate_form: RateForm::Logarithm,
         least_strain: 1e-4,
         spall_stress: 0.0,
+        coupling: Coupling::Uncoupled,
     }
 }
 
@@ -58,39 +59,36 @@ const HEAT: ThermalConstants = ThermalConstants {
 const AL_2024_T351: [f64; 5] = [0.13, 0.13, -1.5, 0.011, 0.0];
 const AL_6061: [f64; 5] = [-0.77, 1.45, -0.47, 0.0, 1.60];
 
-/// Failure strains at the triaxialities −1/3, 0, 1/3, 1, 3/2, worked out apart from the program.
+/// Failure strains at the triaxialities −1/3, 0, 1/3, 1, worked out apart from the program; beyond they stay.
 #[test]
 fn failure_strains_are_those_of_the_published_constants() {
-    let table: [([f64; 5], [f64; 5]); 7] = [
-        (AL_2024_T351, [0.3443, 0.2600, 0.2088, 0.1590, 0.1437]),
+    let table: [([f64; 5], [f64; 4]); 7] = [
+        (AL_2024_T351, [0.3443, 0.2600, 0.2088, 0.1590]),
         (
             [0.112, 0.123, -1.5, 0.007, 0.0],
-            [0.3148, 0.2350, 0.1866, 0.1394, 0.1250],
+            [0.3148, 0.2350, 0.1866, 0.1394],
         ),
-        (AL_6061, [0.9259, 0.6800, 0.4697, 0.1363, 1e-4]),
+        (AL_6061, [0.9259, 0.6800, 0.4697, 0.1363]),
         (
             [0.54, 4.89, -3.03, 0.014, 1.12],
-            [13.97, 5.430, 2.321, 0.7763, 0.5919],
+            [13.97, 5.430, 2.321, 0.7763],
         ),
         (
             [0.05, 3.44, -2.12, 0.002, 0.61],
-            [7.024, 3.490, 1.747, 0.4629, 0.1931],
+            [7.024, 3.490, 1.747, 0.4629],
         ),
         (
             [0.0705, 1.732, -0.54, -0.0123, 0.0],
-            [2.144, 1.8025, 1.517, 1.080, 0.8410],
+            [2.144, 1.8025, 1.517, 1.080],
         ),
         (
             [-0.09, 0.25, -0.5, 0.014, 3.87],
-            [0.2053, 0.1600, 0.1216, 0.0616, 0.0281],
+            [0.2053, 0.1600, 0.1216, 0.0616],
         ),
     ];
     for (constants, strains) in table {
         let law = ductile(constants);
-        for (eta, wanted) in [-1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0, 1.5]
-            .into_iter()
-            .zip(strains)
-        {
+        for (eta, wanted) in [-1.0 / 3.0, 0.0, 1.0 / 3.0, 1.0].into_iter().zip(strains) {
             let q = 0.7e9;
             let found = law.failure_strain([-eta * q, q], 1.0, 300.0, &HEAT);
             assert!(
@@ -102,7 +100,8 @@ fn failure_strains_are_those_of_the_published_constants() {
         let at = |p: f64| law.failure_strain([p, 1e9], 1.0, 300.0, &HEAT);
         assert!(at(-1e9) < at(0.0) && at(0.0) < at(0.3e9));
         assert_eq!(at(0.34e9), f64::INFINITY);
-        assert_eq!(law.failure_strain([-1e9, 0.0], 1.0, 300.0, &HEAT), at(-3e9));
+        assert_eq!([at(-1.5e9), at(-3e9)], [at(-1e9); 2]);
+        assert_eq!(law.failure_strain([-1e9, 0.0], 1.0, 300.0, &HEAT), at(-1e9));
     }
 }
 
@@ -120,11 +119,11 @@ fn rate_heat_and_high_tension_move_the_failure_strain() {
     assert_eq!(at(&law, 0.0, 1.0, 0.0), plain);
     law.rate_form = RateForm::Power;
     assert!((at(&law, 0.0, 1e4, 300.0) / plain - 10_001_f64.powf(0.002)).abs() < 1e-12);
-    // From a triaxiality of 1.5 to the spall stress, linearly in the mean tension.
+    // From a triaxiality of one to the spall stress, linearly in the mean tension.
     law.rate_form = RateForm::Logarithm;
     law.spall_stress = 2.5e9;
-    let [first, middle, last] = [1.5, 2.0, 2.5].map(|eta| at(&law, eta, 1.0, 300.0));
-    assert!((first - 0.1931).abs() < 1e-4);
+    let [first, middle, last] = [1.0, 1.75, 2.5].map(|eta| at(&law, eta, 1.0, 300.0));
+    assert!((first - 0.4629).abs() < 1e-4);
     assert!((middle - 0.5 * (first + 1e-4)).abs() < 1e-12 && last == 1e-4);
     assert_eq!(at(&law, 3.0, 1.0, 300.0), 1e-4);
 }
@@ -435,5 +434,105 @@ fn molten_matter_fails_when_nothing_presses_it() {
         let fails = molten == Molten::Fails;
         assert_eq!(points.damage, [f64::from(u8::from(fails)); LANES]);
         assert_eq!(points.pressure[0] == 0.0, fails);
+    }
+}
+
+/// Where tension is high, the stated spall strength rules: each ductile material of the library bears
+/// it in uniaxial strain and in all that is nearer to an equal pull from all sides.
+#[test]
+fn ductile_materials_bear_the_spall_strength_that_they_state() {
+    let mut checked = 0;
+    for name in library::names()
+        .into_iter()
+        .filter(|name| name.ends_with("-ductile"))
+    {
+        let material = library::find(name).unwrap();
+        let Some(spall) = material.failure.spall else {
+            continue;
+        };
+        for lateral in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let mut points = batch(material.reference_density, 0.0);
+            let l = nalgebra::Vector3::new(1e5, lateral * 1e5, lateral * 1e5);
+            let mut least = 0.0_f64;
+            while points.damage[0] < 1.0 {
+                least = least.min(points.pressure[0]);
+                step(&material, &mut points, &Matrix3::from_diagonal(&l), 2e-10);
+            }
+            let part = least / spall.pressure;
+            assert!((0.99..=1.0).contains(&part), "{name} {lateral}: {part}");
+        }
+        checked += 1;
+    }
+    assert_eq!(checked, 4);
+}
+
+/// Coupled damage softens from the start. The strength `(1 − ε/ε_f)(Y₀ + H ε)` is at its maximum at
+/// `ε = (ε_f − Y₀/H)/2`; from there on the fracture energy rules, less what the particle has taken by
+/// then, of which damage so far leaves `(1 − D)²`.
+#[test]
+fn coupled_damage_softens_and_then_takes_the_fracture_energy() {
+    let (failure, hardening, energy) = (1.0, 1e9, 2e5);
+    for size in [0.2e-3, 1e-3] {
+        let law = VonMises {
+            shear_modulus: G,
+            yield_stress: YIELD,
+            hardening_modulus: hardening,
+        };
+        let mut metal = material(RHO, linear(K), Strength::VonMises(law));
+        let mut coupled = ductile([failure, 0.0, 0.0, 0.0, 0.0]);
+        coupled.coupling = Coupling::Coupled;
+        metal.failure.johnson_cook = Some(coupled);
+        metal.failure.options.fracture_energy = energy;
+        metal.failure.options.effect = Effect::Scaled;
+        let mut points = batch(RHO, 0.0);
+        points.mass = [RHO * size * size * size; LANES];
+        let mut l = Matrix3::zeros();
+        l[(0, 1)] = 1e4;
+        let dt = 2e-9;
+        let (mut work, mut onset) = (0.0, None);
+        while points.damage[0] < 1.0 {
+            let before = stress(&points)[(0, 1)];
+            step(&metal, &mut points, &l, dt);
+            let strain = points.plastic_strain[0];
+            if onset.is_some() {
+                work += 0.5 * (before + stress(&points)[(0, 1)]) * 1e4 * dt;
+            } else if points.failure_onset[0] >= 1.0 {
+                onset = Some(strain);
+            } else {
+                assert!((points.damage[0] - strain / failure).abs() < 1e-9);
+            }
+            assert!(work < 1e12);
+        }
+        let peak = 0.5 * (failure - YIELD / hardening);
+        assert!((onset.unwrap() / peak - 1.0).abs() < 1e-3, "{onset:?}");
+        let kept = 1.0 - peak / failure;
+        let taken = size * kept * (YIELD + hardening * peak) * peak;
+        let left = kept * kept * (energy - taken);
+        assert!(
+            (work * size / left - 1.0).abs() < 0.01,
+            "{}",
+            work * size / left
+        );
+    }
+}
+
+/// What has failed has neither cohesion nor friction, and resists being made smaller: sheared under
+/// pressure it has no shear stress, pulled no tension, pressed all of the pressure.
+#[test]
+fn failed_material_has_no_friction_and_no_cohesion_and_resists_volume() {
+    let mut metal = metal();
+    metal.failure.johnson_cook = Some(ductile(AL_2024_T351));
+    for (density, pressed) in [(1.02 * RHO, true), (0.9 * RHO, false)] {
+        let mut points = batch(density, 0.0);
+        points.damage = [1.0; LANES];
+        let mut l = Matrix3::zeros();
+        l[(0, 1)] = 1e5;
+        for _ in 0..100 {
+            step(&metal, &mut points, &l, 1e-8);
+        }
+        assert_eq!(equivalent(&points), 0.0);
+        let eos = K * (points.density[0] / RHO).ln();
+        let borne = if pressed { eos } else { 0.0 };
+        assert!((points.pressure[0] - borne).abs() <= 1e-9 * K);
     }
 }

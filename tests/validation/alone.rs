@@ -14,6 +14,7 @@ const STEPS: u64 = 22;
 const INPUTS: &[&str] = &[
     "bar-impact",
     "block-impact",
+    "blunt-on-weldox",
     "bumper-hole",
     "crater",
     "dam-break",

@@ -2,9 +2,9 @@
 //! where it would tear them.
 
 use super::approach::Approach;
-use material::{Eos, Material, Strength};
+use material::{Coupling, Eos, Material, Strength};
 use model::readable::shown;
-use model::{Body, Case, SphForm};
+use model::{Body, Case, Shape, SphForm, Vec3};
 
 /// A linear equation of state misses the stiffening of compressed material, by a tenth of the
 /// pressure and more once the strain `u/c` of the shock is a tenth or so.
@@ -20,6 +20,9 @@ const MIE_GRUNEISEN: f64 = 1.0;
 /// plane impacts, .3 to 5 `GPa` (Meyers 1994, *Dynamic Behavior of Materials*, chapter 16).
 const BORNE: f64 = 10e9;
 
+/// Speed over the bulk sound speed below which a blunt nose shears a plug out of a plate (steel: some 900 m/s).
+const PLUGS: f64 = 0.2;
+
 /// Share of the yield stress from which on the stress of artificial viscosity counts.
 const COUNTS: f64 = 0.25;
 
@@ -29,6 +32,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
     let mut warned = vec![false; case.materials.len()];
     let mut torn = vec![false; case.materials.len()];
     let mut braked = vec![false; case.materials.len()];
+    let mut plugs = vec![false; case.materials.len()];
     let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
     for Shock {
         pair,
@@ -61,6 +65,15 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
                 shown(stress, "Pa"),
                 material.name,
                 shown(material.strength.yield_stress(), "Pa")
+            ));
+        }
+        if punches(case, pair, closing) && keeps_its_strength(material) && !plugs[index] {
+            plugs[index] = true;
+            messages.push(format!(
+                "{meeting} with a blunt nose, and `{}` keeps all of its strength until it has failed: no plug \
+                 shears out of it as soon as it should; give it `failure.johnson_cook.coupling = \"coupled\"` and \
+                 a `failure.fracture_energy`",
+                material.name
             ));
         }
         let pressure = impedance(material) * velocity;
@@ -120,6 +133,51 @@ fn viscous_stress(case: &Case, body: &Body, velocity: f64) -> Option<f64> {
     let smoothing = body.smoothing_length / body.lattice.spacing;
     let stress = 0.5 * case.sph.alpha * smoothing * impedance(material) * velocity / across;
     (stress > COUNTS * material.strength.yield_stress()).then_some(stress)
+}
+
+/// Returns true where the second body meets the first, a plate no thicker than it is wide, with a flat end and
+/// slowly.
+fn punches(case: &Case, [plate, striker]: [&Body; 2], closing: f64) -> bool {
+    let way = striker.velocity - plate.velocity;
+    let axis = way.iamax();
+    let straight = way[axis].abs() > 0.9 * closing;
+    let slow = closing < PLUGS * sound_speed(&case.materials[plate.material]);
+    let (Some(plate), Some(striker)) = (extent(&plate.shape, axis), extent(&striker.shape, axis))
+    else {
+        return false;
+    };
+    let across = |extent: Vec3| extent[(axis + 1) % 3].min(extent[(axis + 2) % 3]);
+    case.dimension == 3
+        && straight
+        && slow
+        && plate[axis] <= across(striker)
+        && across(plate) > 1.5 * across(striker)
+}
+
+/// Edges (m) of the box about a body with flat ends along an axis; `None` for any other.
+fn extent(shape: &Shape, along: usize) -> Option<Vec3> {
+    match shape {
+        Shape::Box { lower, upper } => Some(upper - lower),
+        Shape::Cylinder {
+            axis,
+            radius,
+            length,
+            ..
+        } if axis.index() == along => {
+            let mut edges = Vec3::repeat(2.0 * radius);
+            edges[along] = *length;
+            Some(edges)
+        }
+        _ => None,
+    }
+}
+
+/// Returns true for a material that fails by plastic flow, which takes nothing of its strength before.
+fn keeps_its_strength(material: &Material) -> bool {
+    let failure = &material.failure;
+    let coupled = |law: &material::JohnsonCookFailure| law.coupling == Coupling::Coupled;
+    let fails = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
+    fails && !failure.johnson_cook.as_ref().is_some_and(coupled)
 }
 
 /// Returns true for a solid that bears any tension.

@@ -110,6 +110,14 @@ pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
     }
 }
 
+/// Limits progress to the onset, `damage` here, of laws that say nothing of the fracture energy left there.
+#[inline(always)]
+pub(super) fn reach_onset(point: &mut PointBatch, before: &Lanes) {
+    for k in 0..LANES {
+        point.damage[k] = at_least(at_most(point.damage[k], FAILED), before[k]);
+    }
+}
+
 /// Limits damage: failed material cannot fail more, however far a step has taken it.
 #[inline(always)]
 pub(super) fn end(point: &mut PointBatch) {
@@ -135,10 +143,12 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
     }
 }
 
-/// Damages one lane by the power of its stress (W/m³) that opens cracks.
+/// Damages one lane by the power of its stress (W/m³) that opens cracks, the faster the less of the
+/// fracture energy was left at the onset.
 #[inline(always)]
 pub(super) fn spend(point: &mut PointBatch, k: usize, power: f64, now: &Conditions) {
-    let spent = now.size(point, k) * at_least(power / now.kept[k], 0.0) * now.dt;
+    let faster = at_least(point.failure_onset[k], 1.0);
+    let spent = faster * now.size(point, k) * at_least(power / now.kept[k], 0.0) * now.dt;
     point.damage[k] += spent / (2.0 * now.options.fracture_energy);
 }
 

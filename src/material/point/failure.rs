@@ -200,6 +200,13 @@ macro_rules! failure_laws {
                     $( || $law::ASKS_IDENTITY && self.$key.is_some() )+
             }
 
+            /// True if a law asks how the flow stress hardens, to find the onset of softening.
+            #[inline(always)]
+            pub(in crate) fn asks_hardening(&self) -> bool {
+                self.options.softens()
+                    && (false $( || self.$key.is_some_and(|law| law.asks_hardening()) )+)
+            }
+
             /// True if a law follows the temperature.
             #[must_use]
             pub fn needs_temperature(&self) -> bool {
@@ -266,6 +273,7 @@ macro_rules! failure_laws {
                 let before = point.damage;
                 if now.dt != 0.0 {
                     let softens = self.options.softens();
+                    let onset = point.failure_onset;
                     if softens {
                         std::mem::swap(&mut point.damage, &mut point.failure_onset);
                     }
@@ -273,6 +281,7 @@ macro_rules! failure_laws {
                         law.fail(point, now);
                     } )+
                     if softens {
+                        damage::reach_onset(point, &onset);
                         std::mem::swap(&mut point.damage, &mut point.failure_onset);
                         damage::open_cracks(point, now);
                         $( if let Some(law) = &self.$key {

@@ -15,24 +15,39 @@
 //!
 //! Rules that the fit leaves open:
 //!
-//! - `ε_f` is at least `least_strain`: fits with a negative D₁ fall below zero where tension is high.
-//! - Beyond η = 1.5 the fit does not hold. With a `spall_stress` `σ_s`, `ε_f` falls from there linearly
-//!   in the mean tension, to `least_strain` at `σ_s` (1985, section 5); η counts as three at most.
+//! - `ε_f` is at least `least_strain`: fits with a negative D₁ may fall below zero.
+//! - Constants are fitted to torsion (η = 0) and notched bars (η up to about one). Beyond, `ε_f` is
+//!   that of η = 1, and the spall limit of the material rules. With a `spall_stress` `σ_s`, `ε_f` falls
+//!   from there linearly in the mean tension, to `least_strain` at `σ_s`; in section 5 of the paper of
+//!   1985 this line begins at η = 1.5.
 //! - Nothing is damaged below η = −1/3, the value of uniaxial compression: Bao & Wierzbicki (2005),
 //!   *On the cut-off value of negative triaxiality for fracture*, Eng. Fract. Mech. 72, 1049.
+//!
+//! **Coupled damage** takes its share of the strength from the start, `(1 − D) Y`, as in Børvik et al. (2001). Where
+//! Y hardens less than damage takes, the strength is at its maximum, and deformation localises into the
+//! smallest size that a model has:
+//!
+//! ```text
+//! (1 − D) d ln Y/dε < 1/ε_f        d ln Y/dε = ∂ ln Y/∂ε + χ Y/(ρ c) ∂ ln Y/∂T
+//! ```
+//!
+//! with the share χ of plastic work that is heat and the specific heat c. From there on a
+//! `fracture_energy` G rules, less what one size L of the particle has taken by then, `L (1 − D) Y ε`, so that a
+//! band costs about the same at any spacing. `failure_onset` holds `G/(G − L (1 − D) Y ε)` from then on.
 
 use serde::Deserialize;
 
+use super::failure::FAILED;
 use super::radial_return::equivalent_stress;
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::{ThermalConstants, at_least};
 
 /// Triaxiality below which nothing is damaged.
 const CUT_OFF: f64 = -1.0 / 3.0;
-/// Triaxiality up to which the fit holds.
-const HIGH_TENSION: f64 = 1.5;
-/// Largest triaxiality that counts.
-const MOST: f64 = 3.0;
+/// Least share of a fracture energy that is left at the onset of softening.
+const LEAST_LEFT: f64 = 1e-6;
+/// Largest triaxiality of the tests that constants are fitted to: that of notched bars.
+const LARGEST: f64 = 1.0;
 
 /// Dependence of the failure strain on the strain rate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
@@ -56,6 +71,28 @@ impl RateForm {
     }
 }
 
+/// Strength of material that is damaged and has not failed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Coupling {
+    /// All of it.
+    #[default]
+    Uncoupled,
+    /// `1 − D` of it.
+    Coupled,
+}
+
+impl Coupling {
+    /// Its name in the input.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Uncoupled => "uncoupled",
+            Self::Coupled => "coupled",
+        }
+    }
+}
+
 law! {
     /// Damage by plastic strain, the more the larger the tension.
     JohnsonCookFailure {
@@ -75,8 +112,10 @@ law! {
         rate_form: RateForm,
         /// Least failure strain.
         least_strain: "",
-        /// Mean tension at which the least strain is enough (Pa); zero if the fit holds for any.
+        /// Mean tension at which the least strain is enough (Pa); zero if there is none.
         spall_stress: "Pa",
+        /// Share of the strength that damage takes before failure.
+        coupling: Coupling,
     }
 }
 
@@ -100,18 +139,45 @@ impl JohnsonCookFailure {
             let strain = (self.d1 + self.d2 * libm::exp(self.d3 * eta)) * factor;
             at_least(strain, self.least_strain)
         };
-        let high = HIGH_TENSION * equivalent;
-        if tension <= high || self.spall_stress == 0.0 {
-            // No division by a stress that vanishes.
-            let most = tension >= MOST * equivalent;
-            return at(if most { MOST } else { tension / equivalent });
+        let high = LARGEST * equivalent;
+        if tension < high {
+            return at(tension / equivalent);
+        }
+        let first = at(LARGEST);
+        if self.spall_stress == 0.0 {
+            return first;
         }
         if tension >= self.spall_stress {
             return self.least_strain;
         }
         let along = (tension - high) / (self.spall_stress - high);
-        let first = at(HIGH_TENSION);
         first + (self.least_strain - first) * along
+    }
+
+    /// Failure strain of lane k, which has flowed.
+    #[inline(always)]
+    fn strain_of(&self, point: &PointBatch, k: usize, now: &Conditions) -> f64 {
+        let stress = [point.pressure[k], equivalent_stress(point, k)];
+        let rate = now.plastic_increment[k] / now.dt;
+        let strain = self.failure_strain(stress, rate, now.temperature[k], &now.thermal);
+        strain * now.options.strain_factor(point.id[k])
+    }
+
+    /// Lane by lane: only what flows is damaged.
+    #[inline(never)]
+    fn soften_flow(&self, point: &mut PointBatch, now: &Conditions) {
+        for k in 0..LANES {
+            if now.plastic_increment[k] > 0.0 && point.failure_onset[k] < 1.0 {
+                let damage = at_least(point.damage[k], point.failure_onset[k]);
+                point.damage[k] = damage;
+                if (1.0 - damage) * now.hardening[k] * self.strain_of(point, k, now) < 1.0 {
+                    let energy = now.options.fracture_energy;
+                    let taken =
+                        now.size(point, k) * equivalent_stress(point, k) * point.plastic_strain[k];
+                    point.failure_onset[k] = energy / at_least(energy - taken, LEAST_LEFT * energy);
+                }
+            }
+        }
     }
 
     #[inline(always)]
@@ -145,12 +211,22 @@ impl Law for JohnsonCookFailure {
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
             let increment = now.plastic_increment[k];
-            if increment > 0.0 {
-                let stress = [point.pressure[k], equivalent_stress(point, k)];
-                let rate = increment / now.dt;
-                let strain = self.failure_strain(stress, rate, now.temperature[k], &now.thermal);
-                point.damage[k] += increment / (strain * now.options.strain_factor(point.id[k]));
+            // Where matter softens this is the way to the onset, beyond which nothing counts.
+            if increment > 0.0 && point.damage[k] < FAILED {
+                point.damage[k] += increment / self.strain_of(point, k, now);
             }
+        }
+    }
+
+    fn asks_hardening(&self) -> bool {
+        self.coupling == Coupling::Coupled
+    }
+
+    /// Coupled damage before the strength is at its maximum, and the onset of softening there.
+    #[inline(always)]
+    fn open(&self, point: &mut PointBatch, now: &Conditions) {
+        if self.coupling == Coupling::Coupled {
+            self.soften_flow(point, now);
         }
     }
 }

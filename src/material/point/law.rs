@@ -62,6 +62,12 @@ pub trait Law: Listed {
         Self::FOLLOWS_STATE
     }
 
+    /// True if the law asks how the flow stress hardens.
+    #[inline(always)]
+    fn asks_hardening(&self) -> bool {
+        false
+    }
+
     /// Contradiction of constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
         None
@@ -94,6 +100,12 @@ pub trait Law: Listed {
     /// Advances the stress as if nothing yielded.
     #[inline(always)]
     fn deform(&self, _point: &mut PointBatch, _now: &mut Conditions) {}
+
+    /// Logarithmic derivatives of the flow stress of lane k, which has flowed, by the plastic strain and
+    /// by the temperature (1/K).
+    fn hardening(&self, _point: &PointBatch, _k: usize, _now: &Conditions) -> [f64; 2] {
+        [0.0; 2]
+    }
 
     /// Returns the stress to the yield surface.
     #[inline(always)]
@@ -133,6 +145,9 @@ pub struct Conditions {
     pub kept: Lanes,
     /// Equivalent plastic strain of the step.
     pub plastic_increment: Lanes,
+    /// Logarithmic derivative of the flow stress by the plastic strain, with the heat of the flow, where
+    /// a law of failure asks for it.
+    pub hardening: Lanes,
     /// Options of the failure.
     pub options: FailureOptions,
 }
@@ -157,6 +172,7 @@ impl Conditions {
             bulk_modulus,
             kept: [1.0; LANES],
             plastic_increment: [0.0; LANES],
+            hardening: [0.0; LANES],
             options: FailureOptions::DEFAULT,
         }
     }
@@ -229,6 +245,15 @@ macro_rules! strength_laws {
                 match self {
                     Self::None => false,
                     $( Self::$law(_) => $law::NEEDS_MELTING, )+
+                }
+            }
+
+            /// Logarithmic derivatives of the flow stress of lane k, which has flowed, by the plastic
+            /// strain and by the temperature (1/K).
+            pub(in crate) fn hardening(&self, point: &PointBatch, k: usize, now: &Conditions) -> [f64; 2] {
+                match self {
+                    Self::None => [0.0; 2],
+                    $( Self::$law(law) => law.hardening(point, k, now), )+
                 }
             }
 

@@ -15,7 +15,7 @@ const RESIDUAL: f64 = 4e-15;
 
 /// Equivalent stress `√(3/2 S:S)` (Pa) of one lane.
 #[inline(always)]
-pub(super) fn equivalent_stress(batch: &PointBatch, k: usize) -> f64 {
+pub(crate) fn equivalent_stress(batch: &PointBatch, k: usize) -> f64 {
     let s = &batch.deviatoric_stress;
     let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
     let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];

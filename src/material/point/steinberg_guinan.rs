@@ -116,6 +116,12 @@ impl Law for SteinbergGuinan {
         }
     }
 
+    fn hardening(&self, point: &PointBatch, k: usize, now: &Conditions) -> [f64; 2] {
+        let [hard, slope] = self.hardened(point.plastic_strain[k]);
+        let softened = at_least(now.shear_modulus[k] / self.shear_modulus, f64::MIN_POSITIVE);
+        [slope / hard, -self.temperature_coefficient / softened]
+    }
+
     #[inline(always)]
     fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
         jaumann::deform(point, now);

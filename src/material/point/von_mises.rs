@@ -31,6 +31,11 @@ impl Law for VonMises {
         self.yield_stress
     }
 
+    fn hardening(&self, point: &PointBatch, k: usize, _now: &Conditions) -> [f64; 2] {
+        let hard = self.yield_stress + self.hardening_modulus * point.plastic_strain[k];
+        [self.hardening_modulus / hard, 0.0]
+    }
+
     #[inline(always)]
     fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
         jaumann::deform(point, now);

@@ -10,7 +10,7 @@ use super::ClockParams;
 use crate::input::forms::{Named, OneOrMany, OrNone};
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
-use material::{AfterSpall, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
+use material::{AfterSpall, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
 use model::{
     Axis, BodyForm, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
     PotentialRange, Precision, SphForm,
@@ -246,6 +246,7 @@ described_words!(
     AfterSpall,
     Axis,
     ContactDirection,
+    Coupling,
     Crosses,
     Effect,
     Flaws,

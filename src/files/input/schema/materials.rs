@@ -8,7 +8,7 @@ use crate::input::quantity::{
     Density, FractureEnergy, NumberDensity, PerPressure, PerTemperature, Placed, Pressure, Rate,
     SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
-use material::{AfterSpall, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
+use material::{AfterSpall, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
@@ -232,6 +232,8 @@ macro_rules! failure_laws {
                 least_strain: Spanned<f64> = 0.01, Positive;
                 /// Mean tension at which the least strain is enough.
                 spall_stress: Placed<Pressure> = "0", NotNegative => "no such stress";
+                /// Whether damage takes its share of the strength before the material has failed.
+                coupling: Spanned<Coupling> = Coupling::Uncoupled;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

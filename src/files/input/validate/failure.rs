@@ -6,7 +6,7 @@ use super::laws::law;
 use crate::input::forms::OrNone;
 use crate::input::schema::{FailureParams, failure_laws};
 use crate::input::source::Diagnostic;
-use material::{AfterSpall, Effect, Failure, FailureOptions, Law, Strength};
+use material::{AfterSpall, Coupling, Effect, Failure, FailureOptions, Law, Strength};
 
 macro_rules! failure {
     ($(
@@ -78,7 +78,8 @@ fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, 
         ..base
     };
     // What fades says so by itself.
-    let fades = options.softens() || failure.grady_kipp.is_some();
+    let coupled = (failure.johnson_cook).is_some_and(|law| law.coupling == Coupling::Coupled);
+    let fades = options.softens() || coupled || failure.grady_kipp.is_some();
     options.effect = match &params.effect {
         Some(effect) if fades && *effect.get_ref() != Effect::Scaled => {
             let title = "where cracks grow or matter softens, stress fades with damage";
