@@ -104,15 +104,10 @@ impl Law for JohnsonCook {
         let strain = point.plastic_strain[k];
         let [hard, slope, _] = self.hardened(strain, 0.0, 1.0);
         let homologous = now.thermal.homologous(now.temperature[k]);
-        let power = libm::pow(homologous, self.m);
-        let range = now
-            .thermal
-            .melting_temperature
-            .map_or(f64::INFINITY, |melting| {
-                melting - now.thermal.reference_temperature
-            });
         let by_temperature = if 0.0 < homologous && homologous < 1.0 {
-            -self.m * power / (homologous * range * (1.0 - power))
+            let power = libm::pow(homologous, self.m);
+            let warmer = now.temperature[k] - now.thermal.reference_temperature;
+            -self.m * power / (warmer * (1.0 - power))
         } else {
             0.0
         };

@@ -37,7 +37,6 @@
 
 use serde::Deserialize;
 
-use super::failure::FAILED;
 use super::radial_return::equivalent_stress;
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::{ThermalConstants, at_least};
@@ -211,8 +210,7 @@ impl Law for JohnsonCookFailure {
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
             let increment = now.plastic_increment[k];
-            // Where matter softens this is the way to the onset, beyond which nothing counts.
-            if increment > 0.0 && point.damage[k] < FAILED {
+            if increment > 0.0 {
                 point.damage[k] += increment / self.strain_of(point, k, now);
             }
         }
