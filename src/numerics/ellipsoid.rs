@@ -1,5 +1,6 @@
 //! Ellipsoids: what a deformation makes of balls.
 
+use crate::matrix::symmetric_adjugate;
 use crate::principal::principal;
 
 /// Largest stretch of an image.
@@ -88,16 +89,7 @@ impl Ellipsoid {
     #[must_use]
     pub fn metric(&self) -> [f64; 6] {
         let scale = self.0[0] + self.0[1] + self.0[2];
-        let [xx, yy, zz, xy, xz, yz] = self.0.map(|part| part / scale);
-        let cofactors = [
-            yy * zz - yz * yz,
-            xx * zz - xz * xz,
-            xx * yy - xy * xy,
-            xz * yz - xy * zz,
-            xy * yz - xz * yy,
-            xy * xz - xx * yz,
-        ];
-        let determinant = xx * cofactors[0] + xy * cofactors[3] + xz * cofactors[4];
+        let (cofactors, determinant) = symmetric_adjugate(&self.0.map(|part| part / scale));
         cofactors.map(|cofactor| cofactor / (determinant * scale))
     }
 }

@@ -33,6 +33,23 @@ pub fn adjugate(m: &[f64; 9]) -> ([f64; 9], f64) {
     (all, determinant)
 }
 
+/// Adjugate and determinant of a symmetric matrix; components xx, yy, zz, xy, xz, yz.
+#[inline(always)]
+#[must_use]
+pub fn symmetric_adjugate(m: &[f64; 6]) -> ([f64; 6], f64) {
+    let [xx, yy, zz, xy, xz, yz] = *m;
+    let a = [
+        yy * zz - yz * yz,
+        xx * zz - xz * xz,
+        xx * yy - xy * xy,
+        xz * yz - xy * zz,
+        xy * yz - xz * yy,
+        xy * xz - xx * yz,
+    ];
+    let determinant = xx * a[0] + xy * a[3] + xz * a[4];
+    (a, determinant)
+}
+
 /// Inverse of a matrix.
 #[inline(always)]
 #[must_use]

@@ -9,7 +9,7 @@ use numerics::dispatch::Vectorised;
 use numerics::kernel::{PairKernel, PairScale};
 use numerics::lane_matrix::store_all;
 use numerics::lanes::{F64x8, LANES, Lanes};
-use numerics::matrix::product;
+use numerics::matrix::{product, symmetric_adjugate};
 
 /// Particles that give `M` less than this along a direction, over h², are at the edge of the
 /// kernel: two at 1.5 h do. Gradients along it fade out, as they would else end at once with the
@@ -113,7 +113,7 @@ fn filled(m: &[f64; 6], dimension: usize) -> [f64; 6] {
 /// `1/tr M⁻¹` (m²), from a third of the least eigenvalue of `M` to all of it.
 #[inline(always)]
 fn least(m: &[f64; 6], dimension: usize) -> f64 {
-    let (adjugate, determinant) = adjugate(&filled(m, dimension));
+    let (adjugate, determinant) = symmetric_adjugate(&filled(m, dimension));
     let trace = adjugate[0] + adjugate[1] + adjugate[2];
     if determinant > 0.0 && trace > 0.0 {
         determinant / trace
@@ -125,7 +125,7 @@ fn least(m: &[f64; 6], dimension: usize) -> f64 {
 /// `M⁻¹` (1/m², row-major) and the norm of its fit.
 #[inline(always)]
 fn invert(m: &[f64; 6], squares: &[f64; 6], h: f64, dimension: usize) -> ([f64; 9], f64) {
-    let (adjugate, determinant) = adjugate(&filled(m, dimension));
+    let (adjugate, determinant) = symmetric_adjugate(&filled(m, dimension));
     let scale = 1.0 / determinant;
     let [xx, yy, zz, xy, xz, yz] = adjugate;
     let mut inverse = [xx, xy, xz, xy, yy, yz, xz, yz, zz];
@@ -144,22 +144,6 @@ fn invert(m: &[f64; 6], squares: &[f64; 6], h: f64, dimension: usize) -> ([f64; 
     } else {
         (inverse, f64::INFINITY)
     }
-}
-
-/// Adjugate and determinant of a symmetric matrix; components xx, yy, zz, xy, xz, yz.
-#[inline(always)]
-fn adjugate(m: &[f64; 6]) -> ([f64; 6], f64) {
-    let [xx, yy, zz, xy, xz, yz] = *m;
-    let a = [
-        yy * zz - yz * yz,
-        xx * zz - xz * xz,
-        xx * yy - xy * xy,
-        xz * yz - xy * zz,
-        xy * yz - xz * yy,
-        xy * xz - xx * yz,
-    ];
-    let determinant = xx * a[0] + xy * a[3] + xz * a[4];
-    (a, determinant)
 }
 
 /// Eight stress points with the velocity particles about them.
