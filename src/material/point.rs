@@ -28,7 +28,7 @@ pub(super) use damage::limit_expansion;
 pub use elastic::Elastic;
 pub use failure::FAILED;
 use failure::failure_laws;
-pub use failure::{Effect, FailureOptions, Molten};
+pub use failure::{Effect, FailureOptions, Molten, viscous_speed};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
 pub use johnson_cook::JohnsonCook;
 pub use johnson_cook_failure::{Coupling, JohnsonCookFailure, RateForm};

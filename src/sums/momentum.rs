@@ -16,15 +16,15 @@ pub struct StressRecord {
     pub stress_over_density2: [f64; 6],
     /// Density (kg/m³).
     pub density: f64,
-    /// Sound speed (m/s).
-    pub sound_speed: f64,
+    /// Speed of the artificial viscosity (m/s).
+    pub viscous_speed: f64,
 }
 
 impl StressRecord {
-    /// From pressure (Pa), deviatoric stress (Pa), density (kg/m³) and sound speed (m/s).
+    /// From pressure (Pa), deviatoric stress (Pa), density (kg/m³) and the speed of the artificial viscosity (m/s).
     #[inline(always)]
     #[must_use]
-    pub fn new(pressure: f64, deviatoric: &[f64; 6], density: f64, sound_speed: f64) -> Self {
+    pub fn new(pressure: f64, deviatoric: &[f64; 6], density: f64, viscous_speed: f64) -> Self {
         let scale = 1.0 / (density * density);
         let [xx, yy, zz, xy, xz, yz] = *deviatoric;
         Self {
@@ -37,7 +37,7 @@ impl StressRecord {
                 yz * scale,
             ],
             density,
-            sound_speed,
+            viscous_speed,
         }
     }
 }
@@ -64,7 +64,8 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
     /// Density (kg/m³).
     fn density(&self) -> f64;
 
-    /// Speed (m/s) of the linear viscosity: that of sound, by the limiter of the form.
+    /// Speed (m/s) of the linear viscosity: that of sound, by the limiter of the form. A pair without any has no
+    /// quadratic viscosity either.
     fn viscous_speed(&self) -> f64;
 
     /// The torque (N m) that pairs of eight receivers exert on each other without these neighbours, where
@@ -82,8 +83,8 @@ pub trait PairStress: bytemuck::Pod + Send + Sync {
 pub(crate) struct Viscous<V> {
     /// Density of the receivers (kg/m³).
     pub rho: V,
-    /// `α c_i` (m/s).
-    signal: V,
+    /// `c_i` (m/s).
+    speed: V,
     alpha: V,
     twice_beta: V,
     negligible: V,
@@ -127,20 +128,19 @@ impl<V: Lanes, R: PairStress> Divisor<V> for SoftSquare<'_, V, R> {
 }
 
 impl<V: Lanes> Viscous<V> {
-    /// Of receivers of these densities (kg/m³) and sound speeds (m/s).
+    /// Of receivers of these densities (kg/m³) and viscous speeds (m/s).
     #[inline(always)]
-    pub fn begin(viscosity: Viscosity, rho: V, sound_speed: V) -> Self {
-        let alpha = V::splat(viscosity.alpha);
+    pub fn begin(viscosity: Viscosity, rho: V, speed: V) -> Self {
         Self {
             rho,
-            signal: sound_speed.mul(alpha),
-            alpha,
+            speed,
+            alpha: V::splat(viscosity.alpha),
             twice_beta: V::splat(2.0 * viscosity.beta),
             negligible: V::splat(viscosity.negligible),
         }
     }
 
-    /// Of the receivers with a neighbour of this density and sound speed at the relative velocity
+    /// Of the receivers with a neighbour of this density and viscous speed at the relative velocity
     /// `v`, with the inverse of their [`SoftSquare`].
     #[inline(always)]
     pub fn pair<const TERMS: bool>(
@@ -148,7 +148,7 @@ impl<V: Lanes> Viscous<V> {
         terms: &TermSums<V, TERMS>,
         (separation, h, inverse): (&Separation<V>, V, V),
         v: &[V; 3],
-        (density, sound_speed): (f64, f64),
+        (density, speed): (f64, f64),
         shown: &TermRecord,
     ) -> ViscousPair<V> {
         let r = &separation.r;
@@ -161,8 +161,10 @@ impl<V: Lanes> Viscous<V> {
             .mul_add(inverse.mul(rho_sum), self.negligible)
             .min(V::splat(0.0));
         // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
-        let linear = V::splat(sound_speed).mul_add(self.alpha, self.signal);
-        let signal = terms.limit(mu.mul(self.twice_beta).sub(linear), shown);
+        let speeds = self.speed.add(V::splat(speed));
+        let signal = speeds.neg_mul_add(self.alpha, mu.mul(self.twice_beta));
+        let signal = V::splat(0.0).min_where_positive(signal, speeds);
+        let signal = terms.limit(signal, shown);
         let inverse_density = inverse.mul(soft);
         ViscousPair {
             closing,
@@ -372,7 +374,7 @@ impl PairStress for StressRecord {
 
     #[inline(always)]
     fn viscous_speed(&self) -> f64 {
-        self.sound_speed
+        self.viscous_speed
     }
 
     #[inline(always)]

@@ -101,19 +101,25 @@ fn check_sweeps<S: PairScale>(cloud: Cloud, scale: S) {
             ))
         })
         .collect();
-    world.forces(scale, &stress, &world.straight(), 0.0, |k, i, forces| {
-        let (mut sum, mut size) = (Vec3::zeros(), 0.0);
-        for (j, _, g) in world.near(i) {
-            let force = (stress[i] + stress[j]) * g * world.found.motion[j].volume;
-            sum += force;
-            size += force.norm();
-        }
-        for a in 0..3 {
-            let error = forces.acceleration[a].0[k] - sum[a] / world.density[i];
-            assert!(error.abs() <= 1e-13 * size / world.density[i], "{error:e}");
-        }
-        assert!(forces.power.0[k] == 0.0);
-    });
+    world.forces(
+        scale,
+        &stress,
+        &world.straight(),
+        [0.0, 1.0],
+        |k, i, forces| {
+            let (mut sum, mut size) = (Vec3::zeros(), 0.0);
+            for (j, _, g) in world.near(i) {
+                let force = (stress[i] + stress[j]) * g * world.found.motion[j].volume;
+                sum += force;
+                size += force.norm();
+            }
+            for a in 0..3 {
+                let error = forces.acceleration[a].0[k] - sum[a] / world.density[i];
+                assert!(error.abs() <= 1e-13 * size / world.density[i], "{error:e}");
+            }
+            assert!(forces.power.0[k] == 0.0);
+        },
+    );
 }
 
 #[test]
@@ -177,7 +183,7 @@ fn any_fade_conserves() {
             scale,
             &pair_stress,
             &world.straight(),
-            0.0,
+            [0.0, 1.0],
             |k, i, forces| {
                 let motion = &world.found.motion[i];
                 let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
@@ -218,7 +224,7 @@ fn hourglass_control_balances() {
             .map(|_| Vec3::from(random.vector(dimension, 1.0)))
             .collect();
         let (mut sums, mut sizes) = ([0.0; 7], [0.0; 7]);
-        world.forces(scale, &none, &bent, 0.0, |k, i, forces| {
+        world.forces(scale, &none, &bent, [0.0, 1.0], |k, i, forces| {
             let motion = &world.found.motion[i];
             let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
             let turn = Vec3::from(motion.position).cross(&force);
@@ -307,22 +313,46 @@ fn viscosity_balances() {
     let scale = ConstantScale::new(&world.kernel, world.cloud.smoothing_length[0]);
     let none = vec![Matrix::zeros(); world.found.motion.len()];
     let (mut sums, mut sizes) = ([0.0; 7], [0.0; 7]);
-    world.forces(scale, &none, &world.straight(), 1.0, |k, i, forces| {
-        let motion = &world.found.motion[i];
-        let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
-        let turn = Vec3::from(motion.position).cross(&force);
-        let heat = forces.power.0[k] * motion.mass;
-        assert!(heat >= 0.0);
-        let work = Vec3::from(motion.velocity).dot(&force) + heat;
-        let terms = force.iter().chain(turn.iter()).copied().chain([work]);
-        for (n, term) in terms.enumerate() {
-            sums[n] += term;
-            sizes[n] += term.abs();
-        }
-    });
+    world.forces(
+        scale,
+        &none,
+        &world.straight(),
+        [1.0, 1.0],
+        |k, i, forces| {
+            let motion = &world.found.motion[i];
+            let force = Vec3::from(forces.acceleration.map(|lanes| lanes.0[k])) * motion.mass;
+            let turn = Vec3::from(motion.position).cross(&force);
+            let heat = forces.power.0[k] * motion.mass;
+            assert!(heat >= 0.0);
+            let work = Vec3::from(motion.velocity).dot(&force) + heat;
+            let terms = force.iter().chain(turn.iter()).copied().chain([work]);
+            for (n, term) in terms.enumerate() {
+                sums[n] += term;
+                sizes[n] += term.abs();
+            }
+        },
+    );
     for (sum, size) in sums.into_iter().zip(sizes) {
         assert!(f64::abs(sum) <= 1e-12 * size, "{sums:?} of {sizes:?}");
     }
+}
+
+/// Pairs without a speed of the artificial viscosity and without stress exert nothing, however fast they approach.
+#[test]
+fn dust_passes_dust() {
+    let world = World::new(cloud(3, 1.0, 0, 71), 72);
+    let scale = ConstantScale::new(&world.kernel, world.cloud.smoothing_length[0]);
+    let none = vec![Matrix::zeros(); world.found.motion.len()];
+    world.forces(
+        scale,
+        &none,
+        &world.straight(),
+        [1.0, 0.0],
+        |k, _, forces| {
+            assert_eq!(forces.acceleration.map(|lanes| lanes.0[k]), [0.0; 3]);
+            assert_eq!(forces.power.0[k], 0.0);
+        },
+    );
 }
 
 /// A block that turns, flies and hits: with gravity, a load, a symmetry plane and a rigid plane, whatever

@@ -150,14 +150,14 @@ impl World {
         }
     }
 
-    /// The second sweep with stresses `P` between corrections, the same bits by all instruction
-    /// sets.
+    /// The second sweep with stresses `P` between corrections and this α and speed of the artificial viscosity, the same
+    /// bits by all instruction sets.
     pub fn forces<S: PairScale>(
         &self,
         scale: S,
         pair_stress: &[Matrix],
         hourglass: &[Vec3],
-        alpha: f64,
+        [alpha, viscous_speed]: [f64; 2],
         mut visit: impl FnMut(usize, usize, &Forces),
     ) {
         let records: Vec<_> = (pair_stress.iter().zip(&self.density).zip(hourglass))
@@ -165,7 +165,7 @@ impl World {
                 stress: p.transpose().as_slice().try_into().unwrap(),
                 hourglass: hourglass.into(),
                 density,
-                viscous_speed: 1.0,
+                viscous_speed,
             })
             .collect();
         let chunks = self.found.clusters.chunks();

@@ -67,7 +67,7 @@ fn plain(cloud: &Cloud, found: &Found, records: &Records, kernel: &Kernel, i: u3
         let mut pi = 0.0;
         if dot(&v, &r) < 0.0 {
             let mu = h * dot(&v, &r) / (distance * distance + 0.01 * h * h);
-            let c = 0.5 * (state.sound_speed + other.sound_speed);
+            let c = 0.5 * (state.viscous_speed + other.viscous_speed);
             let rho = 0.5 * (state.density + other.density);
             pi = (-VISCOSITY.alpha * c * mu + VISCOSITY.beta * mu * mu) / rho;
             sum.approach = sum.approach.max(-mu);
@@ -116,7 +116,7 @@ fn force_records(cloud: &Cloud, found: &Found, seed: u64) -> Records {
             let motion = MotionRecord { mass, ..*motion };
             let stress = StressRecord {
                 density,
-                sound_speed,
+                viscous_speed: sound_speed,
                 stress_over_density2: particles::Mirrors::reflect_symmetric(
                     &stress,
                     image.mirror_mask(),
@@ -357,7 +357,7 @@ fn pair(here: [f64; 3], there: [f64; 3]) -> Records {
     let motion = [here, there].into_iter().zip(velocities);
     let stress = StressRecord {
         density: 2700.0,
-        sound_speed: 6000.0,
+        viscous_speed: 6000.0,
         stress_over_density2: [1e3, -2e3, 1e3, 5e2, 4e2, 3e2],
     };
     Records {

@@ -57,7 +57,7 @@ impl Records {
             records.motion.push(MotionRecord { mass, ..*motion });
             records.stress.push(StressRecord {
                 density,
-                sound_speed,
+                viscous_speed: sound_speed,
                 stress_over_density2: Mirrors::reflect_symmetric(&stress, image.mirror_mask()),
             });
             records.options.push(TermRecord {
@@ -136,7 +136,7 @@ fn plain(
         let (mut pi, mut speed) = (0.0, 0.0);
         if dot(&v, &r) < 0.0 {
             let mu = h * dot(&v, &r) / (distance * distance + 0.01 * h * h);
-            let c = 0.5 * (state.sound_speed + other.sound_speed);
+            let c = 0.5 * (state.viscous_speed + other.viscous_speed);
             let limit = if options & BALSARA == 0 {
                 1.0
             } else {

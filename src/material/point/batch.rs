@@ -1,5 +1,6 @@
 //! The numbers that material points hold, eight points at a time.
 
+use super::failure::viscous_speed;
 use crate::point_fields;
 
 /// Points advanced together; a batch lane is one point.
@@ -43,6 +44,13 @@ macro_rules! point_batch {
                 $( $name: <point_lanes!($kind)>::ZERO, )+
                 plastic_energy: [0.0; LANES],
             };
+
+            /// Speed (m/s) of the artificial viscosity at point `k`: see [`viscous_speed`].
+            #[inline(always)]
+            #[must_use]
+            pub fn viscous_speed(&self, k: usize) -> f64 {
+                viscous_speed(self.sound_speed[k], self.pressure[k], self.damage[k])
+            }
         }
     };
 }

@@ -8,6 +8,19 @@ use numerics::counter::exponential;
 /// Damage of matter that has failed.
 pub const FAILED: f64 = 1.0;
 
+/// Speed (m/s) of the artificial viscosity at a point, from that of sound (m/s), the pressure (Pa) and the damage.
+///
+/// Failed matter without pressure bears no stress: there are no waves in it that viscosity could damp.
+#[inline(always)]
+#[must_use]
+pub fn viscous_speed(sound_speed: f64, pressure: f64, damage: f64) -> f64 {
+    if damage >= FAILED && pressure == 0.0 {
+        0.0
+    } else {
+        sound_speed
+    }
+}
+
 /// Loss of failed material.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]

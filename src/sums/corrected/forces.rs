@@ -19,20 +19,20 @@ pub struct CorrectedRecord {
     pub hourglass: [f64; 3],
     /// Density (kg/m³).
     pub density: f64,
-    /// Sound speed by the limiter of the linear viscosity (m/s).
+    /// Speed of the artificial viscosity (m/s).
     pub viscous_speed: f64,
 }
 
 impl CorrectedRecord {
     /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³), sound speed
-    /// (m/s) and the limiter of the linear viscosity.
+    /// (m/s) and that of the artificial viscosity (m/s).
     #[inline(always)]
     #[must_use]
     pub fn new(
         stress: &[f64; 9],
         displacement: &[f64; 3],
         stiffness: f64,
-        [density, sound_speed, limiter]: [f64; 3],
+        [density, sound_speed, viscous_speed]: [f64; 3],
     ) -> Self {
         let modulus = stiffness * density * sound_speed * sound_speed;
         Self {
@@ -43,7 +43,7 @@ impl CorrectedRecord {
                 modulus * displacement[2],
             ],
             density,
-            viscous_speed: limiter * sound_speed,
+            viscous_speed,
         }
     }
 }

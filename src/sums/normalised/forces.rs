@@ -15,18 +15,19 @@ pub struct NormalisedRecord {
     pub shift: [f64; 3],
     /// Density (kg/m³).
     pub density: f64,
-    /// Sound speed (m/s).
-    pub sound_speed: f64,
+    /// Speed of the artificial viscosity (m/s).
+    pub viscous_speed: f64,
 }
 
 impl NormalisedRecord {
-    /// From pressure and deviatoric stress (Pa), `B` and `γ` (1/m), density (kg/m³) and sound speed (m/s).
+    /// From pressure and deviatoric stress (Pa), `B` and `γ` (1/m), density (kg/m³) and the speed of the
+    /// artificial viscosity (m/s).
     #[must_use]
     pub fn new(
         (pressure, deviatoric): (f64, &[f64; 6]),
         matrix: &[f64; 9],
         shift: &[f64; 3],
-        [density, sound_speed]: [f64; 2],
+        [density, viscous_speed]: [f64; 2],
     ) -> Self {
         let [xx, yy, zz, xy, xz, yz] = *deviatoric;
         let sigma = [
@@ -38,7 +39,7 @@ impl NormalisedRecord {
             stress: [0.0; 9],
             shift: [0.0; 3],
             density,
-            sound_speed,
+            viscous_speed,
         };
         for a in 0..3 {
             for c in 0..3 {
@@ -129,7 +130,7 @@ impl PairStress for NormalisedRecord {
 
     #[inline(always)]
     fn viscous_speed(&self) -> f64 {
-        self.sound_speed
+        self.viscous_speed
     }
 
     #[inline(always)]

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
+use super::stresses::viscous_speed;
 use crate::sph::shared::{Sums, scratch_of};
 use crate::sph::signal::{SignalSpeed, Signals};
 use numerics::dispatch::Vectorised;
@@ -135,7 +136,7 @@ fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
         (particles.pressure[i], &particles.deviatoric_stress[i]),
         &particles.gradient_correction[i],
         &particles.gradient_shift[i],
-        [particles.density[i], particles.sound_speed[i]],
+        [particles.density[i], viscous_speed(particles, i)],
     );
     NormalisedRecord {
         stress: Mirrors::reflect_tensor(&own.stress, mirror_mask),

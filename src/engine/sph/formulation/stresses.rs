@@ -37,12 +37,18 @@ impl Show for &ShowStress<'_> {
                 after.pressure[k],
                 &[s(0), s(1), s(2), s(3), s(4), s(5)],
                 after.density[k],
-                after.sound_speed[k],
+                after.viscous_speed(k),
             );
             // SAFETY: by the contract of this function.
             unsafe { self.set(index, record) };
         });
     }
+}
+
+/// Speed (m/s) of the artificial viscosity of a particle.
+pub(super) fn viscous_speed(particles: &ParticleStore, i: usize) -> f64 {
+    let damage = particles.damage.get(i).copied().unwrap_or(0.0);
+    material::viscous_speed(particles.sound_speed[i], particles.pressure[i], damage)
 }
 
 /// Stresses of halo particles and their images, or of the images of this rank's particles.
@@ -62,7 +68,7 @@ pub(super) fn fill_stresses(
                 particles.pressure[slot],
                 &Mirrors::reflect_symmetric(&particles.deviatoric_stress[slot], mirror_mask),
                 particles.density[slot],
-                particles.sound_speed[slot],
+                viscous_speed(particles, slot),
             )
         },
     );
