@@ -484,3 +484,85 @@ fn unequal_volumes_are_unequal_sizes() {
     assert_eq!(rows(1.0).bodies[0].lattice.sizes, None);
     assert_eq!(SizeClasses::new(&rows(1.0)).count(), 1);
 }
+
+/// A file of a folder with what it is made of, and the case that reads it.
+fn cube(folder: &Path, name: &str, content: &str) {
+    fs::write(folder.join(name), content).unwrap();
+}
+
+const NODES: &str = "1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
+
+#[test]
+fn decks_include_files_below_their_folder() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("case");
+    fs::create_dir_all(folder.join("parts")).unwrap();
+    cube(place.path(), "outside", NODES);
+    cube(&folder, "parts/nodes.k", &format!("*NODE\n{NODES}*END\n"));
+    cube(&folder, "parts/nodes.inp", NODES);
+    let solid = "1,1,1,2,3,4,5,6,7,8\n";
+    let keys = |file: &str| format!("file = \"{file}\", unit = \"1 mm\"");
+    cube(
+        &folder,
+        "deck.k",
+        &format!("*KEYWORD\n*INCLUDE\nparts/nodes.k\n*ELEMENT_SOLID\n{solid}"),
+    );
+    cube(
+        &folder,
+        "deck.inp",
+        "*NODE,\nINPUT=parts/nodes.inp\n*ELEMENT, TYPE=C3D8\n1,1,2,3,4,5,6,7,8\n",
+    );
+    for deck in ["deck.k", "deck.inp"] {
+        let case = case_in(&folder, &keys(deck), "");
+        let (cloud, _) = case.bodies[0].cloud().unwrap();
+        assert_eq!(cloud.count(), 1, "{deck}");
+        // A restart needs what was included, too.
+        let nodes = folder.join("parts/nodes").with_extension(&deck[5..]);
+        let before = fs::read_to_string(&nodes).unwrap();
+        fs::write(&nodes, before.replace("7,1,1,1", "7,1,1,2")).unwrap();
+        let digest = &cloud.file.sha256;
+        let message = refused_in(
+            &folder,
+            &format!("{}, sha256 = \"{digest}\"", keys(deck)),
+            "",
+        );
+        assert!(message.contains("is no longer the one"), "{message}");
+    }
+    std::os::unix::fs::symlink("../outside", folder.join("link")).unwrap();
+    let twice = "*INCLUDE\nparts/nodes.k\nparts/nodes.k\n";
+    let itself = "*INCLUDE\ndeck.k\n";
+    for (content, said) in [
+        ("*INCLUDE\n../outside\n", "it is not below the folder"),
+        ("*INCLUDE\nlink\n", "it is not below the folder"),
+        ("*INCLUDE\n/etc/passwd\n", "it is not below the folder"),
+        (
+            "*INCLUDE\nnowhere\n",
+            "line 2: cannot include `nowhere`: No such",
+        ),
+        ("*INCLUDE\nparts\n", "it is a folder, not a regular file"),
+        (
+            twice,
+            "line 3: cannot include `parts/nodes.k`: it is included twice",
+        ),
+        (
+            itself,
+            "line 2: in `deck.k`, line 2: cannot include `deck.k`",
+        ),
+        (
+            "*INCLUDE\nparts/nodes.inp\n",
+            "line 2: in `parts/nodes.inp`, line 1: it does not begin with a keyword",
+        ),
+    ] {
+        cube(&folder, "deck.k", content);
+        let message = refused_in(&folder, &keys("deck.k"), "");
+        assert!(message.contains(said), "{content}: {message}");
+    }
+}
+
+#[test]
+fn parts_are_found_in_large_and_small_letters() {
+    let case = |part: &str| format!("file = \"hexes.inp\", unit = \"1 mm\", part = \"{part}\"");
+    assert_eq!(case_in(&fixtures(), &case("VOLUME1"), "").bodies.len(), 1);
+    let message = refused_in(&fixtures(), &case("VOLUME"), "");
+    assert!(message.contains("it has no part `VOLUME`"), "{message}");
+}

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use csv::{ByteRecord, ReaderBuilder, Trim};
 
 use super::names::of_column;
-use super::part::{PartName, choose};
+use super::part::{MOST_PARTS, PartName, choose};
 use super::table::no_column;
 use super::text::{at, number, shortened};
 use super::{Fault, Request, Table};
@@ -15,9 +15,8 @@ use model::units;
 
 /// Beginning of a line with the units of the columns.
 const UNITS: &str = "# units:";
-/// Most columns, and most parts that one may name.
+/// Most columns.
 const MOST_COLUMNS: usize = 10_000;
-const MOST_PARTS: usize = 1_000_000;
 
 /// A column that is read: its place in the rows, of which quantity and component it is, and one of
 /// its unit in SI units.

@@ -6,7 +6,9 @@
 
 mod abaqus;
 mod arrays;
+mod budget;
 mod csv;
+mod deck;
 mod dyna;
 mod gmsh;
 mod h5;
@@ -26,6 +28,7 @@ use ::sha2::{Digest, Sha256};
 
 use super::file;
 use super::schema::{FormatName, TakeName};
+use deck::Deck;
 use model::SurfaceFile;
 
 pub use part::Wanted;
@@ -142,15 +145,22 @@ pub fn read(
     format: FormatName,
     request: &Request,
 ) -> Result<(Table, SurfaceFile), Fault> {
-    let sha256 = digest(path)?;
+    let mut sha256 = digest(path)?;
     let text = || file::content(path, LONGEST, "a file of particles").map_err(Fault::from);
+    let mut deck = |read: fn(&str, &mut Deck) -> Result<mesh::Mesh, Fault>| {
+        let content = text()?;
+        let mut deck = Deck::of(path, &content);
+        let mesh = read(&text::of(&content), &mut deck)?;
+        sha256 = deck.sha256();
+        mesh.table(request)
+    };
     let table = match format {
         FormatName::Snapshot => snapshot::read(path, request)?,
         FormatName::Hdf5 => h5::read(path, request)?,
         FormatName::Csv => csv::read(&text()?, request)?,
         FormatName::Vtu => vtu::read(&text()?, request)?,
-        FormatName::Dyna => dyna::read(&text::of(&text()?))?.table(request)?,
-        FormatName::Abaqus => abaqus::read(&text::of(&text()?))?.table(request)?,
+        FormatName::Dyna => deck(dyna::read)?,
+        FormatName::Abaqus => deck(abaqus::read)?,
         FormatName::Gmsh => gmsh::read(&text()?)?.table(request)?,
     };
     table.check(request.dimension)?;
