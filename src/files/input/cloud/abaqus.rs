@@ -373,7 +373,7 @@ impl Block {
                 _ => return Err("a range has a first, a last and perhaps a step".to_owned()),
             };
             for (number, &place) in self.places.range(first..=last.max(first)) {
-                budget.take(1, size_of::<u32>())?;
+                budget.take(1, 2 * size_of::<u32>())?;
                 if (number - first).is_multiple_of(step) {
                     parts[set].cells.push(place);
                 }
@@ -393,7 +393,7 @@ impl Block {
             let other =
                 *other.ok_or_else(|| format!("no set `{}` comes before", shortened(name)))?;
             if other != set {
-                budget.take(parts[other].cells.len(), size_of::<u32>())?;
+                budget.take(parts[other].cells.len(), 2 * size_of::<u32>())?;
                 let cells = parts[other].cells.clone();
                 parts[set].cells.extend(cells);
             }

@@ -36,6 +36,9 @@ fn is_passed(line: &str) -> bool {
     line.starts_with('$') || line.trim().is_empty()
 }
 
+/// Letters of the value of a parameter, which others may take over.
+const LONGEST_VALUE: usize = 80;
+
 /// Particles of one card: all nodes from one number to another.
 #[derive(Debug)]
 struct Range {
@@ -184,6 +187,9 @@ impl Reader {
                 for pair in cells(&[10; 8])?.chunks_exact(2) {
                     // The first letter is the type.
                     let mut letters = pair[0].chars();
+                    if pair[1].len() > LONGEST_VALUE {
+                        return Err("the value of a parameter is too long".to_owned());
+                    }
                     if letters.next().is_some() {
                         let name = letters.as_str().trim().to_lowercase();
                         self.parameters.insert(name, pair[1].to_string());

@@ -41,12 +41,13 @@ impl Instance {
         all: &mut Mesh,
         budget: &mut Budget,
     ) -> Result<u64, Fault> {
-        budget.take(part.nodes.len(), size_of::<(u64, [f64; 3])>())?;
-        budget.take(part.cells.len(), size_of::<Cell>() + size_of::<u32>())?;
+        // Lists have room for twice as much when they grow.
+        budget.take(part.nodes.len(), 2 * size_of::<(u64, [f64; 3])>())?;
+        budget.take(part.cells.len(), 2 * size_of::<Cell>() + size_of::<u32>())?;
         for set in &part.parts {
             budget.take(set.cells.len(), size_of::<u32>())?;
             let name = self.name.len() + set.name.name.len();
-            budget.take(1, size_of::<Part>() + name)?;
+            budget.take(1, 2 * size_of::<Part>() + name)?;
         }
         let mut last = first;
         let mut beyond = |number: u64| {

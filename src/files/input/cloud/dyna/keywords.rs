@@ -151,7 +151,7 @@ fn content(name: &str) -> Result<Content, String> {
         return Err(format!("`*{keyword}…` is not read: {help}"));
     }
     Ok(match name {
-        "KEYWORD" => Content::Keyword,
+        "KEYWORD" | "KEYWORD_ID" | "KEYWORD_JOBID" => Content::Keyword,
         "END" => Content::End,
         "NODE" => Content::Nodes,
         "ELEMENT_SOLID" => Content::Solids,
