@@ -7,9 +7,11 @@
 mod abaqus;
 mod arrays;
 mod budget;
+mod columns;
 mod csv;
 mod deck;
 mod dyna;
+mod frames;
 mod gmsh;
 mod h5;
 mod mesh;
@@ -53,6 +55,10 @@ const ENDINGS: &[(&str, FormatName)] = &[
     ("dyn", FormatName::Dyna),
     ("inp", FormatName::Abaqus),
     ("msh", FormatName::Gmsh),
+    ("lammpstrj", FormatName::Lammps),
+    ("dump", FormatName::Lammps),
+    ("xyz", FormatName::Xyz),
+    ("extxyz", FormatName::Xyz),
 ];
 
 /// Request for the content of a file.
@@ -162,6 +168,8 @@ pub fn read(
         FormatName::Dyna => deck(dyna::read)?,
         FormatName::Abaqus => deck(abaqus::read)?,
         FormatName::Gmsh => gmsh::read(&text()?)?.table(request)?,
+        FormatName::Lammps => frames::lammps(&text::of(&text()?), request)?,
+        FormatName::Xyz => frames::xyz(&text::of(&text()?), request)?,
     };
     table.check(request.dimension)?;
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
