@@ -114,7 +114,8 @@ fn change(bytes: &mut Vec<u8>, random: &mut Random) {
             8 => {
                 // A line again and again.
                 let line = bytes.split_inclusive(|b| *b == b'\n').nth(random.below(40));
-                repeat(bytes, at, &line.unwrap_or_default().to_vec(), random);
+                let line = line.unwrap_or_default().to_vec();
+                repeat(bytes, at, &line, random);
             }
             9 => {
                 let mut words = bytes.split(|b| !b.is_ascii_alphanumeric() && *b != b'.');
