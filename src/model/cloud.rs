@@ -3,6 +3,7 @@
 use super::surface::Tree;
 use super::units::Powers;
 use super::{SurfaceFile, Vec3};
+use nalgebra::Matrix3;
 
 macro_rules! quantities {
     ($($(#[$doc:meta])+ $quantity:ident = $name:literal, $components:literal, $powers:expr;)+) => {
@@ -238,6 +239,21 @@ impl Cloud {
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.volumes.iter().fold(0.0, |sum, v| sum + v)
+    }
+
+    /// Covariance of the places of their volumes (m²).
+    #[must_use]
+    pub fn covariance(&self) -> Matrix3<f64> {
+        let (lower, upper) = self.bounds();
+        let middle = (Vec3::from(lower) + Vec3::from(upper)) * 0.5;
+        let (mut first, mut second) = (Vec3::zeros(), Matrix3::zeros());
+        for (x, volume) in self.positions.iter().zip(&self.volumes) {
+            let x = Vec3::from(*x) - middle;
+            first += x * *volume;
+            second += x * x.transpose() * *volume;
+        }
+        let mean = first / self.volume();
+        second / self.volume() - mean * mean.transpose()
     }
 
     /// Corners of a box around all (m).

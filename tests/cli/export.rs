@@ -68,6 +68,42 @@ fn every_format_holds_what_the_snapshots_do() {
     check("formats", [&run, &run.join("export")]);
 }
 
+/// As bodies of another case, by their number and places.
+#[test]
+fn exported_particles_are_read_again() {
+    let (place, run) = impact();
+    let told = |particles: &str| {
+        let text = format!(
+            "dimension = 3\nrun.end_time = \"1 us\"\nmaterial.metal.library = \"copper\"\n\
+             [[body]]\nname = \"it\"\nmaterial = \"metal\"\nparticles = {{ {particles} }}\n"
+        );
+        let path = place.path().join("again.toml");
+        fs::write(&path, text).unwrap();
+        let told = end(command(WHIPPLE).arg("check").arg(&path))
+            .with_code(0)
+            .stdout;
+        let lines = told.lines().filter(|line| !line.contains(" from "));
+        lines.skip(1).take(2).collect::<Vec<_>>().join("\n")
+    };
+    let expected = told("file = \"run\", part = \"sphere\"");
+    assert!(expected.contains("particles of metal"), "{expected}");
+    assert!(expected.contains("spans"), "{expected}");
+    for (format, ending, keys) in [
+        ("lammps", "lammpstrj", "part = 2"),
+        ("xyz", "xyz", "part = \"sphere\""),
+        ("csv", "csv", "part = \"sphere\""),
+    ] {
+        let file = format!("last.{ending}");
+        let out = place.path().join(&file);
+        export(&run, &["--to", format, "--out", out.to_str().unwrap()]).with_code(0);
+        assert_eq!(
+            told(&format!("file = \"{file}\", {keys}")),
+            expected,
+            "{format}"
+        );
+    }
+}
+
 #[test]
 fn images_have_their_signs_and_fields_are_made_as_plots_make_them() {
     let (place, run) = impact();

@@ -304,11 +304,16 @@ fn small_leaks_are_mended_and_said_and_large_ones_refused_with_their_place() {
     let mut across = cuboid([0.0; 3], [2.0; 3]);
     across.extend(cuboid([1.0, 0.5, 0.5], [3.0, 1.5, 1.5]));
     write_stl(&path, &across);
+    assert!(refused(folder.path(), body).contains("its parts overlap, as near ["));
+    // Through and through.
+    let mut across = cuboid([0.0; 3], [2.0; 3]);
+    across.extend(cuboid([-9.0, 0.8, 0.8], [11.0, 1.2, 1.2]));
+    write_stl(&path, &across);
     let case = case(folder.path(), body, "");
     let told = warnings(&case, &approaches(&case));
     let is_told = told
         .iter()
-        .any(|line| line.contains("cut through each other, as near [2, "));
+        .any(|line| line.contains("cut through each other, as near ["));
     assert!(is_told, "{told:?}");
 }
 
@@ -408,4 +413,35 @@ fn fewer_dimensions_have_no_surfaces_of_triangles() {
         assert!(error.to_string().contains(&said), "{error}");
         assert!(error.to_string().contains("take a "), "{error}");
     }
+}
+
+/// A quarter of a bar from a program that keeps the other sides.
+#[test]
+fn a_mesh_behind_symmetry_planes_is_mirrored_and_measured_as_a_bar() {
+    let folder = tempfile::tempdir().unwrap();
+    write_stl(
+        &folder.path().join("bar.stl"),
+        &cuboid([-1.0, 0.0, 0.0], [0.0, 1.0, 8.0]),
+    );
+    let body = |mirror: &str| {
+        format!(
+            "shape.stl = {{ file = \"bar.stl\", unit = \"1 mm\"{mirror} }}\nvelocity = [0, 0, \"-9 m/s\"]"
+        )
+    };
+    let planes = "[[symmetry]]\naxis = \"x\"\n[[symmetry]]\naxis = \"y\"\n";
+    let path = written(folder.path(), &body(""), planes);
+    let message = load(&path, &[]).unwrap_err().to_string();
+    assert!(
+        message.contains("`mirror` of the file puts it there"),
+        "{message}"
+    );
+    let case = case(folder.path(), &body(", mirror = \"x\""), planes);
+    let error = mass(&case, 8.0);
+    assert!(error.abs() < 1e-12, "{error:e}");
+    let kinds = case.measure.measures.iter().map(|measure| &measure.kind);
+    let feet = kinds.filter_map(|kind| match kind {
+        model::MeasureKind::Bar(bar) => Some(bar.foot),
+        _ => None,
+    });
+    assert_eq!(feet.collect::<Vec<_>>(), [[0.0, 0.0, -1.0]]);
 }

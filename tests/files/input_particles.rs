@@ -484,3 +484,191 @@ fn unequal_volumes_are_unequal_sizes() {
     assert_eq!(rows(1.0).bodies[0].lattice.sizes, None);
     assert_eq!(SizeClasses::new(&rows(1.0)).count(), 1);
 }
+
+/// A file of a folder with what it is made of, and the case that reads it.
+fn cube(folder: &Path, name: &str, content: &str) {
+    fs::write(folder.join(name), content).unwrap();
+}
+
+const NODES: &str = "1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n";
+
+#[test]
+fn decks_include_files_below_their_folder() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("case");
+    fs::create_dir_all(folder.join("parts")).unwrap();
+    cube(place.path(), "outside", NODES);
+    cube(&folder, "parts/nodes.k", &format!("*NODE\n{NODES}*END\n"));
+    cube(&folder, "parts/nodes.inp", NODES);
+    let solid = "1,1,1,2,3,4,5,6,7,8\n";
+    let keys = |file: &str| format!("file = \"{file}\", unit = \"1 mm\"");
+    cube(
+        &folder,
+        "deck.k",
+        &format!("*KEYWORD\n*INCLUDE\nparts/nodes.k\n*ELEMENT_SOLID\n{solid}"),
+    );
+    cube(
+        &folder,
+        "deck.inp",
+        "*NODE,\nINPUT=parts/nodes.inp\n*ELEMENT, TYPE=C3D8\n1,1,2,3,4,5,6,7,8\n",
+    );
+    for deck in ["deck.k", "deck.inp"] {
+        let case = case_in(&folder, &keys(deck), "");
+        let (cloud, _) = case.bodies[0].cloud().unwrap();
+        assert_eq!(cloud.count(), 1, "{deck}");
+        // A restart needs what was included, too.
+        let nodes = folder.join("parts/nodes").with_extension(&deck[5..]);
+        let before = fs::read_to_string(&nodes).unwrap();
+        fs::write(&nodes, before.replace("7,1,1,1", "7,1,1,2")).unwrap();
+        let digest = &cloud.file.sha256;
+        let message = refused_in(
+            &folder,
+            &format!("{}, sha256 = \"{digest}\"", keys(deck)),
+            "",
+        );
+        assert!(message.contains("is no longer the one"), "{message}");
+    }
+    std::os::unix::fs::symlink("../outside", folder.join("link")).unwrap();
+    let twice = "*INCLUDE\nparts/nodes.k\nparts/nodes.k\n";
+    let itself = "*INCLUDE\ndeck.k\n";
+    for (content, said) in [
+        ("*INCLUDE\n../outside\n", "it is not below the folder"),
+        ("*INCLUDE\nlink\n", "it is not below the folder"),
+        ("*INCLUDE\n/etc/passwd\n", "it is not below the folder"),
+        (
+            "*INCLUDE\nnowhere\n",
+            "line 2: cannot include `nowhere`: No such",
+        ),
+        ("*INCLUDE\nparts\n", "it is a folder, not a regular file"),
+        (
+            twice,
+            "line 3: cannot include `parts/nodes.k`: it is included twice",
+        ),
+        (
+            itself,
+            "line 2: in `deck.k`, line 2: cannot include `deck.k`",
+        ),
+        (
+            "*INCLUDE\nparts/nodes.inp\n",
+            "line 2: in `parts/nodes.inp`, line 1: it does not begin with a keyword",
+        ),
+    ] {
+        cube(&folder, "deck.k", content);
+        let message = refused_in(&folder, &keys("deck.k"), "");
+        assert!(message.contains(said), "{content}: {message}");
+    }
+}
+
+#[test]
+fn parts_are_found_in_large_and_small_letters() {
+    let case = |part: &str| format!("file = \"hexes.inp\", unit = \"1 mm\", part = \"{part}\"");
+    assert_eq!(case_in(&fixtures(), &case("VOLUME1"), "").bodies.len(), 1);
+    let message = refused_in(&fixtures(), &case("VOLUME"), "");
+    assert!(message.contains("it has no part `VOLUME`"), "{message}");
+}
+
+/// Files of few bytes that name very much.
+#[test]
+fn small_files_take_little_memory_and_time() {
+    let place = tempfile::tempdir().unwrap();
+    let write = |name: &str, content: &str| fs::write(place.path().join(name), content).unwrap();
+    let keys = |file: &str| format!("file = \"{file}\", unit = \"1 mm\"");
+    let solid = "*ELEMENT, TYPE=C3D8, ELSET=A\n1,1,2,3,4,5,6,7,8\n";
+    // A set within itself is itself.
+    let itself = format!(
+        "*NODE\n{NODES}{solid}{}",
+        "*ELSET, ELSET=a\nA, A\n".repeat(40)
+    );
+    write("a.inp", &itself);
+    let case = case_in(place.path(), &keys("a.inp"), "");
+    assert_eq!(case.bodies[0].cloud().unwrap().0.count(), 1);
+    let most = "it takes more than 32 times its length and 64 MiB of memory";
+    let in_turns = "*ELSET, ELSET=B\nA\n*ELSET, ELSET=A\nB\n".repeat(40);
+    write("b.inp", &format!("*NODE\n{NODES}{solid}{in_turns}"));
+    let mut instances = format!("*PART, NAME=P\n*NODE\n{NODES}*ELEMENT, TYPE=C3D8\n");
+    for n in 1..3000 {
+        let _ = writeln!(instances, "{n},1,2,3,4,5,6,7,8");
+    }
+    instances += "*END PART\n*ASSEMBLY, NAME=X\n";
+    for n in 1..1000 {
+        let _ = writeln!(instances, "*INSTANCE, NAME=I{n}, PART=P\n{n},0,0");
+    }
+    write("c.inp", &instances);
+    let numbers: Vec<String> = (1..=3000).map(|n| format!("{n} ")).collect();
+    let numbers = numbers.concat();
+    let mut groups = format!(
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 3000 {numbers}0\n\
+         $EndEntities\n$Elements\n1 3000 1 3000\n3 1 5 3000\n"
+    );
+    for n in 1..=3000 {
+        let _ = writeln!(groups, "{n} 1 2 3 4 5 6 7 8");
+    }
+    write("d.msh", &groups);
+    for file in ["b.inp", "c.inp", "d.msh"] {
+        let message = refused_in(place.path(), &keys(file), "");
+        assert!(message.contains(most), "{file}: {message}");
+    }
+}
+
+#[test]
+fn mirrored_particles_have_mirrored_velocities_and_stresses() {
+    let place = tempfile::tempdir().unwrap();
+    let table = "# units: mm,mm,mm,m/s,m/s,m/s,g,Pa,Pa,Pa,Pa,Pa,Pa\n\
+        x,y,z,vx,vy,vz,mass,deviatoric_stress_xx,deviatoric_stress_yy,deviatoric_stress_zz,\
+        deviatoric_stress_xy,deviatoric_stress_xz,deviatoric_stress_yz\n\
+        -1,0,0,1,2,3,1,5,-2,-3,7,8,9\n-2,0,0,1,2,3,1,5,-2,-3,7,8,9\n";
+    fs::write(place.path().join("a.csv"), table).unwrap();
+    let plane = "\n[[symmetry]]\naxis = \"x\"\n";
+    let input = |mirror: &str| text(&format!("file = \"a.csv\"{mirror}"), "") + plane;
+    let name = place.path().join("case.toml").display().to_string();
+    let message = parse(&name, &input(""), &[]).unwrap_err().to_string();
+    assert!(
+        message.contains("has no particle above the symmetry planes"),
+        "{message}"
+    );
+    assert!(
+        message.contains("`mirror` of the file puts it there"),
+        "{message}"
+    );
+    let case = parse(&name, &input(", mirror = \"x\""), &[]).unwrap();
+    let (cloud, _) = case.bodies[0].cloud().unwrap();
+    assert_eq!(cloud.positions()[1], [2e-3, 0.0, 0.0]);
+    assert_eq!(
+        cloud.get(Quantity::Velocity, 0),
+        Some(&[-1.0, 2.0, 3.0][..])
+    );
+    let stress = cloud.get(Quantity::DeviatoricStress, 0);
+    assert_eq!(stress, Some(&[5.0, -2.0, -3.0, -7.0, -8.0, 9.0][..]));
+}
+
+/// Elements, and points of a dump, in the form of a bar along the diagonal of x and y.
+#[test]
+fn a_bar_of_a_file_has_the_measure_of_a_bar() {
+    let place = tempfile::tempdir().unwrap();
+    let mut dump = String::from(
+        "ITEM: UNITS\nsi\nITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n250\nITEM: BOX BOUNDS ff ff ff\n\
+         0 1\n0 1\n0 1\nITEM: ATOMS id type x y z\n",
+    );
+    for n in 0..250 {
+        let [along, across, up] = [n / 25, n / 5 % 5, n % 5].map(|k| 1e-3 * f64::from(k));
+        let along = 2.0 * along;
+        let [x, y] = [along - across, along + across].map(|x| x * 0.5_f64.sqrt());
+        let _ = writeln!(dump, "{n} 1 {x} {y} {up}");
+    }
+    fs::write(place.path().join("a.dump"), dump).unwrap();
+    let more = "spacing = \"1 mm\"\nvelocity = [\"9 m/s\", 0, 0]";
+    let case = case_in(place.path(), "file = \"a.dump\"", more);
+    let [measure] = &case.measure.measures[..] else {
+        panic!("{:?}", case.measure.measures)
+    };
+    let model::MeasureKind::Bar(bar) = &measure.kind else {
+        panic!("{measure:?}")
+    };
+    let half = 0.5_f64.sqrt();
+    let off = bar
+        .foot
+        .iter()
+        .zip([half, half, 0.0])
+        .map(|(a, b)| (a - b).abs());
+    assert!(off.fold(0.0, f64::max) < 1e-9, "{:?}", bar.foot);
+}

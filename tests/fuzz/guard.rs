@@ -56,6 +56,7 @@ static ALLOCATOR: Counting = Counting;
 /// An attempt that is watched until this is dropped.
 pub struct Watch {
     begun: usize,
+    most: usize,
     what: String,
     _end: Sender<()>,
 }
@@ -63,6 +64,11 @@ pub struct Watch {
 /// Watches an attempt: one that does not end is told and ends the process, which nothing else
 /// could.
 pub fn watch(what: &str) -> Watch {
+    watch_within(what, MOST)
+}
+
+/// The same of one that may take so much memory (bytes).
+pub fn watch_within(what: &str, most: usize) -> Watch {
     let begun = HELD.load(Relaxed);
     PEAK.store(begun, Relaxed);
     let (end, ended) = channel();
@@ -78,6 +84,7 @@ pub fn watch(what: &str) -> Watch {
     });
     Watch {
         begun,
+        most,
         what: what.to_owned(),
         _end: end,
     }
@@ -89,7 +96,7 @@ impl Drop for Watch {
         if !std::thread::panicking() {
             let what = &self.what;
             assert!(
-                taken < MOST,
+                taken < self.most,
                 "{taken} bytes of memory are taken for the file {what}"
             );
         }

@@ -4,6 +4,7 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use crate::guard;
 use crate::random::Random;
 use crate::{Budget, Met, folder, random};
 use files::input::parse;
@@ -11,6 +12,8 @@ use files::preflight::{approaches, warnings};
 
 /// Longer files are not changed further.
 const LONGEST: usize = 20_000;
+/// Longest file that repetitions make (bytes).
+const LONGEST_CHANGED: usize = 200_000;
 
 /// What may stand in a text.
 const WORDS: &[&str] = &[
@@ -78,6 +81,8 @@ fn seeds() -> Vec<(&'static str, Vec<u8>)> {
 fn attempt(folder: &Path, format: &str, bytes: &[u8]) -> String {
     let file = folder.join(format!("part.{format}"));
     fs::write(&file, bytes).unwrap();
+    let most = 32 * bytes.len() + (64 << 20);
+    let _watch = guard::watch_within(&format!("part.{format}"), most);
     let text = format!(
         "dimension = 3\nspacing = \"0.5 mm\"\nrun.end_time = \"1 us\"\n\
          material.metal.library = \"copper\"\n[[body]]\nname = \"block\"\nmaterial = \"metal\"\n\
@@ -111,7 +116,13 @@ fn change(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
         }
         let at = random.below(bytes.len());
         let end = (at + random.below(120)).min(bytes.len());
-        match random.below(8) {
+        match random.below(9) {
+            8 => {
+                // A part again and again.
+                let part = bytes[at..end].repeat(1 << random.below(11));
+                drop(bytes.splice(at..at, part));
+                bytes.truncate(LONGEST_CHANGED);
+            }
             0 => bytes[at] = u8::try_from(random.below(256)).unwrap(),
             1 => bytes[at] ^= 1 << random.below(8),
             2 => drop(bytes.splice(at..at, WORDS[random.below(WORDS.len())].bytes())),

@@ -32,6 +32,11 @@ const CURVED: &[&str] = &[
     "end", "con", "bzp", "bsp", "cdc", "cdp", "res", "ctech", "stech",
 ];
 
+/// Work on faces, by the squares of their corners, for each byte of a file, and of any file: that of
+/// a face grows faster than its line.
+const WORK: usize = 8;
+const LEAST_WORK: usize = 1 << 24;
+
 /// The triangles of a content, in its own units. Faces with more corners are cut into triangles.
 ///
 /// # Errors
@@ -39,6 +44,7 @@ const CURVED: &[&str] = &[
 pub fn triangles(bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String> {
     let mut places: Vec<[f64; 3]> = Vec::new();
     let mut soup = Vec::new();
+    let mut work = LEAST_WORK + WORK * bytes.len();
     for (line, text) in statements(bytes) {
         let failed = |why: String| Err(format!("line {line}: {why}"));
         let mut words = text.split_ascii_whitespace();
@@ -55,6 +61,11 @@ pub fn triangles(bytes: &[u8]) -> Result<Vec<[[f64; 3]; 3]>, String> {
                     Ok(face) => face,
                     Err(why) => return failed(why),
                 };
+                let Some(left) = work.checked_sub(face.len().pow(2)) else {
+                    let why = "too many faces have too many corners; save it as triangles";
+                    return failed(why.to_owned());
+                };
+                work = left;
                 let Some(cut) = triangulate(&face) else {
                     return failed(no_polygon(face.len()));
                 };
@@ -191,6 +202,12 @@ mod tests {
             let error = count(&format!("{SQUARE}{line}\n")).unwrap_err();
             assert!(error.contains(said), "{line}: {error}");
         }
+        // Short lines that take long.
+        let face: Vec<String> = (1..=1500).map(|k| format!(" -{k}")).collect();
+        let places: Vec<String> = (0..1500).map(|k| format!("v {k} {} 0\n", k * k)).collect();
+        let many = places.concat() + &format!("f{}\n", face.concat()).repeat(16);
+        let error = count(&many).unwrap_err();
+        assert!(error.contains("line 1508: too many faces"), "{error}");
         assert!(triangles(&[0xff, 0, 0xfe, b'\n', b'\\']).is_err());
         assert!(triangles(b"").is_err());
     }

@@ -50,6 +50,23 @@ pub enum MeshError {
         /// One end of such an edge.
         location: String,
     },
+    /// Parts that are both solid lie in one another.
+    #[error(
+        "its parts overlap, as near {location}, where mass would count twice: save each part as a file \
+         and join them by `union`"
+    )]
+    Overlap {
+        /// The middle of a triangle of one that is within another.
+        location: String,
+    },
+    /// Parts that lie in one another, too many of them.
+    #[error("more than {most} of its parts lie around one place, {location}")]
+    Nested {
+        /// So many may.
+        most: usize,
+        /// The place.
+        location: String,
+    },
     /// The triangles enclose nothing.
     #[error("it encloses no volume")]
     NoVolume,

@@ -7,6 +7,11 @@ use numerics::vector::{cross, dot, minus};
 /// Volumes below this share of what they could be are rounding: nothing crosses.
 const ROUNDING: f64 = 1e-9;
 
+/// Pairs that are looked at for each triangle on the mean, and in all surfaces: of long triangles side by
+/// side each may be near to all others.
+const MOST_PAIRS: usize = 256;
+const LEAST_PAIRS: usize = 1 << 20;
+
 /// Triangles of a surface that cut through each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
@@ -17,10 +22,12 @@ pub struct Crossing {
 }
 
 impl Mesh {
-    /// Its triangles that cut through each other, if any do. Inside and outside mean little there.
+    /// Its triangles that cut through each other, if any do, as far as they are looked at. Inside and
+    /// outside mean little there.
     #[must_use]
     pub fn crossing(&self) -> Option<Crossing> {
         let mut first: Option<Crossing> = None;
+        let mut pairs = LEAST_PAIRS + MOST_PAIRS * self.triangles.len();
         for (n, t) in (0..).zip(&self.triangles) {
             let x = self.at(n);
             let side = |pick: fn(f64, f64) -> f64| -> [f64; 3] {
@@ -33,6 +40,10 @@ impl Mesh {
                     partners.push(m);
                 }
             });
+            let Some(left) = pairs.checked_sub(partners.len()) else {
+                break;
+            };
+            pairs = left;
             // The tree's order does not count.
             partners.sort_unstable();
             for m in partners {

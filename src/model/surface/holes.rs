@@ -210,34 +210,52 @@ fn cut_ears(x: &[[f64; 2]]) -> Option<Vec<[usize; 3]>> {
         (x[b][0] - x[a][0]) * (x[c][1] - x[a][1]) - (x[b][1] - x[a][1]) * (x[c][0] - x[a][0])
     };
     let square = |a: usize, b: usize| (x[b][0] - x[a][0]).powi(2) + (x[b][1] - x[a][1]).powi(2);
+    let ear = |left: &[usize], k: usize| {
+        let n = left.len();
+        [left[(k + n - 1) % n], left[k], left[(k + 1) % n]]
+    };
+    // Width over length of an ear that holds no other corner, else zero.
+    let quality = |left: &[usize], k: usize| {
+        let [a, b, c] = ear(left, k);
+        let longest = square(a, b).max(square(b, c)).max(square(c, a));
+        let quality = turn(a, b, c) / longest;
+        let is_outside = |&p: &usize| {
+            [a, b, c].contains(&p)
+                || turn(a, b, p) < 0.0
+                || turn(b, c, p) < 0.0
+                || turn(c, a, p) < 0.0
+        };
+        let is_ear = quality > 0.0 && left.iter().all(is_outside);
+        if is_ear { quality } else { 0.0 }
+    };
+    let all = |left: &[usize]| -> Vec<f64> { (0..left.len()).map(|k| quality(left, k)).collect() };
+    let best = |qualities: &[f64]| {
+        let better = |best: usize, k: usize| {
+            if qualities[k] > qualities[best] {
+                k
+            } else {
+                best
+            }
+        };
+        let best = (1..qualities.len()).fold(0, better);
+        (qualities[best] > 0.0).then_some(best)
+    };
     let mut left: Vec<usize> = (0..x.len()).collect();
+    let mut qualities = all(&left);
     let mut ears = Vec::new();
     while left.len() > 3 {
-        let n = left.len();
-        let ear = |k: usize| [left[(k + n - 1) % n], left[k], left[(k + 1) % n]];
-        // Width over length.
-        let quality = |[a, b, c]: [usize; 3]| {
-            let longest = square(a, b).max(square(b, c)).max(square(c, a));
-            turn(a, b, c) / longest
-        };
-        let holds_none = |[a, b, c]: [usize; 3]| {
-            left.iter().all(|&p| {
-                [a, b, c].contains(&p)
-                    || turn(a, b, p) < 0.0
-                    || turn(b, c, p) < 0.0
-                    || turn(c, a, p) < 0.0
-            })
-        };
-        let mut best: Option<(f64, usize)> = None;
-        for k in 0..n {
-            let quality = quality(ear(k));
-            if quality > best.map_or(0.0, |(other, _)| other) && holds_none(ear(k)) {
-                best = Some((quality, k));
-            }
-        }
-        let (_, k) = best?;
-        ears.push(ear(k));
+        // A cut changes the ears beside it alone, but where corners lie on edges.
+        let k = best(&qualities).or_else(|| {
+            qualities = all(&left);
+            best(&qualities)
+        })?;
+        ears.push(ear(&left, k));
         left.remove(k);
+        qualities.remove(k);
+        let n = left.len();
+        for beside in [(k + n - 1) % n, k % n] {
+            qualities[beside] = quality(&left, beside);
+        }
     }
     let last = [left[0], left[1], left[2]];
     (turn(last[0], last[1], last[2]) > 0.0).then(|| ears.push(last))?;

@@ -6,11 +6,13 @@
 
 use super::closed::{MeshError, edges, is_convex};
 use super::mend::{Mended, mend};
-use super::shells::nest;
+use super::shells::{check_apart, nest};
 use super::soup::{Soup, normal_area};
 use super::tree::Tree;
 use super::triangle::{Feature, closest_on_triangle};
 use super::{Foot, SurfaceFile, along};
+use crate::Vec3;
+use nalgebra::Matrix3;
 use numerics::vector::{cross, dot, minus};
 
 /// A closed surface of triangles, turned so that their normals point outwards.
@@ -51,27 +53,26 @@ impl Mesh {
     /// # Errors
     /// If the triangles are no closed surface.
     pub fn new(triangles: &[[[f64; 3]; 3]]) -> Result<Self, MeshError> {
-        let soup = Soup::new(triangles);
+        let mut soup = Soup::new(triangles);
         soup.check()?;
-        Self::nested(soup, Mended::default())
+        nest(&mut soup)?;
+        Ok(Self::closed(soup.corners, soup.triangles))
     }
 
     /// The same of triangles that are nearly a closed surface, mended as far as particles of a
     /// spacing (m) do not feel it; [`Self::mended`] has the repairs.
     ///
     /// # Errors
-    /// If the triangles are far from a closed surface.
+    /// If the triangles are far from a closed surface, or parts of it overlap.
     pub fn mend(triangles: &[[[f64; 3]; 3]], spacing: f64) -> Result<Self, MeshError> {
         let mut soup = Soup::new(triangles);
-        let mended = match soup.check() {
+        let mut mended = match soup.check() {
             Ok(()) => Mended::default(),
             Err(_) => mend(&mut soup, spacing)?,
         };
-        Self::nested(soup, mended)
-    }
-
-    fn nested(mut soup: Soup, mut mended: Mended) -> Result<Self, MeshError> {
-        mended.shells = nest(&mut soup)?;
+        let (shells, turned) = nest(&mut soup)?;
+        check_apart(&soup, &shells)?;
+        mended.shells = turned;
         let mut mesh = Self::closed(soup.corners, soup.triangles);
         mesh.mended = mended;
         Ok(mesh)
@@ -97,7 +98,7 @@ impl Mesh {
     }
 
     /// The mesh of a closed surface whose normals point outwards.
-    fn closed(corners: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
+    pub(super) fn closed(corners: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
         let at = |t: &[u32; 3]| t.map(|c| corners[c as usize]);
         let unit = |v: [f64; 3]| along(&v, dot(&v, &v).sqrt());
         let faces: Vec<[f64; 3]> = triangles
@@ -229,6 +230,24 @@ impl Mesh {
             dot(&a, &cross(&b, &c)) / 6.0
         });
         parts.fold(0.0, |sum, part| sum + part)
+    }
+
+    /// Covariance of the places that it encloses (m²), by the second moments of tetrahedra.
+    #[must_use]
+    pub fn covariance(&self) -> Matrix3<f64> {
+        let (lower, upper) = self.bounds();
+        let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]));
+        let (mut volume, mut first, mut second) = (0.0, Vec3::zeros(), Matrix3::zeros());
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|c| Vec3::from(minus(&self.corners[c as usize], &middle)));
+            let (part, sum) = (a.dot(&b.cross(&c)) / 6.0, a + b + c);
+            volume += part;
+            first += sum * (part / 4.0);
+            let corners = [a, b, c, sum].map(|x| x * x.transpose());
+            second += corners.iter().sum::<Matrix3<f64>>() * (part / 20.0);
+        }
+        let mean = first / volume;
+        second / volume - mean * mean.transpose()
     }
 
     /// `true` if the surface is convex.

@@ -1,12 +1,19 @@
 //! The orientation of triangles: alike along all edges, outwards in outer shells and inwards in
 //! cavities.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::closed::{MeshError, edges, location};
+use super::mesh::Mesh;
 use super::soup::{Soup, normal_area, number, undirected};
 use super::tree::Tree;
 use numerics::vector::{cross, dot, minus};
+
+/// Depth below a face, over the size of all, where a place is within the solid.
+const DEPTH: f64 = 1e-5;
+/// Shells that may lie around one place.
+const MOST_AROUND: usize = 64;
 
 /// Turns triangles so that all run alike along their edges, as most of each piece do. Gives how many
 /// were turned.
@@ -75,43 +82,142 @@ pub(super) fn align(soup: &mut Soup) -> Result<usize, MeshError> {
 }
 
 /// One connected piece of a closed surface.
-struct Shell {
+pub(super) struct Shell {
     triangles: Vec<u32>,
+    /// Negative where normals point into it.
     volume: f64,
     lower: [f64; 3],
     upper: [f64; 3],
+    /// Itself, once it is asked for distances.
+    mesh: OnceCell<Mesh>,
+}
+
+impl Shell {
+    /// True of a place that is deeper within it than `depth` (m).
+    fn holds(&self, soup: &Soup, x: &[f64; 3], depth: f64) -> bool {
+        let mesh = self.mesh.get_or_init(|| {
+            let (mut corners, mut numbers) = (Vec::new(), BTreeMap::new());
+            let own = self.triangles.iter().map(|&n| soup.triangles[n as usize]);
+            let own = own.map(|t| {
+                t.map(|c| {
+                    *numbers.entry(c).or_insert_with(|| {
+                        corners.push(soup.corners[c as usize]);
+                        number(corners.len() - 1)
+                    })
+                })
+            });
+            let own = own.collect();
+            Mesh::closed(corners, own)
+        });
+        mesh.distance(x) * self.volume.signum() < -depth
+    }
+}
+
+/// The shells whose boxes hold a place.
+///
+/// # Errors
+/// If there are too many of them.
+fn around(shells: &[Shell], tree: &Tree, x: &[f64; 3]) -> Result<Vec<usize>, MeshError> {
+    let mut found = Vec::new();
+    tree.near(x, 0.0, |n| {
+        let Shell { lower, upper, .. } = &shells[n as usize];
+        if (0..3).all(|k| lower[k] <= x[k] && x[k] <= upper[k]) {
+            found.push(n as usize);
+        }
+        // More are not looked for.
+        if found.len() > MOST_AROUND { -1.0 } else { 0.0 }
+    });
+    if found.len() > MOST_AROUND {
+        return Err(MeshError::Nested {
+            most: MOST_AROUND,
+            location: location(x),
+        });
+    }
+    Ok(found)
 }
 
 /// Turns the shells of a closed surface so that normals point out of the solid: outwards from those
-/// within no other or in a cavity, inwards from cavities. Returns the number of turned ones, if not
-/// all.
+/// within no other or in a cavity, inwards from cavities. Returns them, and the number of turned
+/// ones, if not all.
 ///
 /// # Errors
-/// If a shell encloses nothing.
-pub(super) fn nest(soup: &mut Soup) -> Result<usize, MeshError> {
-    let shells = shells(soup);
+/// If a shell encloses nothing, or lies within too many.
+pub(super) fn nest(soup: &mut Soup) -> Result<(Vec<Shell>, usize), MeshError> {
+    let mut shells = shells(soup);
     let is_some = |volume: f64| volume.is_finite() && volume != 0.0;
     if !shells.iter().all(|shell| is_some(shell.volume)) {
         return Err(MeshError::NoVolume);
     }
-    let boxes: Vec<_> = shells.iter().map(|s| (s.lower, s.upper)).collect();
-    let tree = Tree::new(&boxes);
-    let mut turned = 0;
-    let wrong: Vec<bool> = shells
-        .iter()
-        .enumerate()
-        .map(|(n, shell)| {
-            let inside = shells.len() > 1 && depth(soup, &shells, &tree, n) % 2 == 1;
-            (shell.volume < 0.0) != inside
+    if let [shell] = &shells[..] {
+        if shell.volume < 0.0 {
+            turn(soup, &mut shells[0]);
+        }
+        return Ok((shells, 0));
+    }
+    let tree = tree(&shells);
+    let wrong: Result<Vec<bool>, MeshError> = (0..shells.len())
+        .map(|n| {
+            let inside = depth(soup, &shells, &tree, n)? % 2 == 1;
+            Ok((shells[n].volume < 0.0) != inside)
         })
         .collect();
-    for (shell, _) in shells.iter().zip(&wrong).filter(|(_, wrong)| **wrong) {
-        turned += 1;
-        for &n in &shell.triangles {
-            soup.triangles[n as usize].swap(1, 2);
+    let wrong = wrong?;
+    for (shell, _) in shells.iter_mut().zip(&wrong).filter(|(_, wrong)| **wrong) {
+        turn(soup, shell);
+    }
+    let turned = wrong.iter().filter(|wrong| **wrong).count();
+    let turned = if turned == shells.len() { 0 } else { turned };
+    Ok((shells, turned))
+}
+
+fn turn(soup: &mut Soup, shell: &mut Shell) {
+    for &n in &shell.triangles {
+        soup.triangles[n as usize].swap(1, 2);
+    }
+    shell.volume = -shell.volume;
+    shell.mesh.take();
+}
+
+fn tree(shells: &[Shell]) -> Tree {
+    let boxes: Vec<_> = shells.iter().map(|s| (s.lower, s.upper)).collect();
+    Tree::new(&boxes)
+}
+
+/// Checks that shells, turned as they nest, do not overlap: the places right below the middles of all
+/// triangles must be within the solid once. Flat parts that touch do not overlap.
+///
+/// # Errors
+/// If they do.
+pub(super) fn check_apart(soup: &Soup, shells: &[Shell]) -> Result<(), MeshError> {
+    if shells.len() < 2 {
+        return Ok(());
+    }
+    let (tree, below) = (tree(shells), DEPTH * soup.size());
+    for &n in shells.iter().flat_map(|shell| &shell.triangles) {
+        let t = &soup.triangles[n as usize];
+        let normal = normal_area(&soup.at(t));
+        let length = dot(&normal, &normal).sqrt();
+        let middle = middle(soup, n);
+        let x: [f64; 3] = std::array::from_fn(|a| middle[a] - below / length * normal[a]);
+        let around = around(shells, &tree, &x)?;
+        if around.len() < 2 {
+            continue;
+        }
+        let holding = around.iter().map(|&n| &shells[n]);
+        let holding = holding.filter(|shell| shell.holds(soup, &x, 0.5 * below));
+        let times = holding.fold(0.0, |sum, shell| sum + shell.volume.signum());
+        if times > 1.0 {
+            let location = location(&middle);
+            return Err(MeshError::Overlap { location });
         }
     }
-    Ok(if turned == shells.len() { 0 } else { turned })
+    Ok(())
+}
+
+/// The middle of a triangle (m).
+fn middle(soup: &Soup, n: u32) -> [f64; 3] {
+    let [a, b, c] = soup.at(&soup.triangles[n as usize]);
+    std::array::from_fn(|k| (a[k] + b[k] + c[k]) / 3.0)
 }
 
 fn shells(soup: &Soup) -> Vec<Shell> {
@@ -128,6 +234,7 @@ fn shells(soup: &Soup) -> Vec<Shell> {
             volume: 0.0,
             lower: [f64::INFINITY; 3],
             upper: [f64::NEG_INFINITY; 3],
+            mesh: OnceCell::new(),
         };
         let mut done = 0;
         while let Some(&n) = shell.triangles.get(done) {
@@ -162,34 +269,15 @@ fn shells(soup: &Soup) -> Vec<Shell> {
 }
 
 /// Within how many others a shell lies.
-fn depth(soup: &Soup, shells: &[Shell], tree: &Tree, n: usize) -> usize {
-    let t = &soup.triangles[shells[n].triangles[0] as usize];
-    let corners = soup.at(t);
-    let x: [f64; 3] =
-        std::array::from_fn(|a| (corners[0][a] + corners[1][a] + corners[2][a]) / 3.0);
-    let mut around = Vec::new();
-    tree.near(&x, 0.0, |other| {
-        around.push(other as usize);
-        0.0
-    });
+fn depth(soup: &Soup, shells: &[Shell], tree: &Tree, n: usize) -> Result<usize, MeshError> {
+    let x = middle(soup, shells[n].triangles[0]);
+    let least = DEPTH * DEPTH * soup.size();
     let holds = |&other: &usize| {
         let (a, b) = (&shells[n], &shells[other]);
         let wider = (0..3).all(|k| b.lower[k] <= a.lower[k] && a.upper[k] <= b.upper[k]);
-        other != n && wider && winding(soup, b, &x).abs() > 0.5
+        other != n && wider && b.holds(soup, &x, least)
     };
-    around.into_iter().filter(holds).count()
-}
-
-/// The winding number of a shell about a point: the solid angles of its triangles over 4π (van
-/// Oosterom & Strackee 1983).
-fn winding(soup: &Soup, shell: &Shell, x: &[f64; 3]) -> f64 {
-    let angles = shell.triangles.iter().map(|&n| {
-        let [a, b, c] = soup.at(&soup.triangles[n as usize]).map(|y| minus(&y, x));
-        let [u, v, w] = [&a, &b, &c].map(|r| dot(r, r).sqrt());
-        let below = u * v * w + dot(&a, &b) * w + dot(&b, &c) * u + dot(&c, &a) * v;
-        2.0 * libm::atan2(dot(&a, &cross(&b, &c)), below)
-    });
-    angles.fold(0.0, |sum, angle| sum + angle) / (4.0 * std::f64::consts::PI)
+    Ok(around(shells, tree, &x)?.into_iter().filter(holds).count())
 }
 
 /// Removes triangles that occur twice: of those that run alike one is kept, those that run against

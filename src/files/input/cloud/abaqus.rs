@@ -8,16 +8,20 @@ mod tests;
 use std::collections::BTreeMap;
 
 use super::Fault;
+use super::budget::Budget;
+use super::deck::Deck;
 use super::mesh::{Cell, Kind, Mesh, Part, as_place};
-use super::part::PartName;
+use super::part::{MOST_PARTS, PartName};
 use super::text::{at, id, number, shortened};
 use instance::Instance;
 use model::Vec3;
 
 /// Keywords that make or move nodes and elements, so that they cannot be passed over.
 const REFUSED: &[(&str, &str)] = &[
-    ("INCLUDE", "put all of it into one file"),
     ("SYSTEM", "write nodes in the global system"),
+    ("ADJUST", "write the moved nodes"),
+    ("IMPERFECTION", "write the moved nodes"),
+    ("IMPORT", "write the imported nodes and elements"),
     ("NGEN", "write out its nodes"),
     ("NFILL", "write out its nodes"),
     ("NCOPY", "write out its nodes"),
@@ -27,6 +31,10 @@ const REFUSED: &[(&str, &str)] = &[
     ("PARAMETER", "write numbers in place of parameters"),
 ];
 
+/// Beginnings of types of elements that are matter, too: particles, thick shells, Eulerian and
+/// cylindrical ones.
+const OTHER_SOLIDS: &[&str] = &["PC3D", "PD3D", "SC6", "SC8", "CSS8", "EC3D", "CCL"];
+
 /// A keyword with its parameters.
 struct Keyword {
     name: String,
@@ -34,6 +42,7 @@ struct Keyword {
 }
 
 impl Keyword {
+    /// Of its line, or of several that are joined.
     fn of(line: &str) -> Self {
         let mut words = line.trim_start_matches('*').split(',').map(str::trim);
         let name = words.next().unwrap_or_default().to_uppercase();
@@ -65,25 +74,8 @@ struct Block {
     mesh: Mesh,
     /// By the number of the element.
     places: BTreeMap<u64, u32>,
-}
-
-impl Block {
-    /// The set of a name.
-    fn set(&mut self, name: &str, is_set: bool) -> usize {
-        let parts = &mut self.mesh.parts;
-        let found = parts.iter().position(|part| part.name.name == name);
-        found.unwrap_or_else(|| {
-            parts.push(Part {
-                name: PartName {
-                    number: None,
-                    name: name.to_owned(),
-                },
-                is_set,
-                ..Part::default()
-            });
-            parts.len() - 1
-        })
-    }
+    /// Places of sets by their names in capitals, since large and small letters are the same.
+    sets: BTreeMap<String, usize>,
 }
 
 /// Owner of the lines of data that follow.
@@ -106,46 +98,81 @@ struct Reader {
     block: usize,
     instances: Vec<Instance>,
     section: Section,
+    /// A keyword so far, whose line goes on.
+    keyword: String,
     /// Numbers of an element so far, whose line goes on.
     begun: Vec<u64>,
+    /// Places of parts in `blocks` by their names in capitals.
+    parts: BTreeMap<String, usize>,
 }
 
-/// Reads an input file.
+/// Reads an input file, with those that it names.
 ///
 /// # Errors
 /// The fault, with its line.
-pub fn read(text: &str) -> Result<Mesh, Fault> {
+pub fn read(text: &str, deck: &mut Deck) -> Result<Mesh, Fault> {
+    match lines(text).next() {
+        Some((_, line)) if line.starts_with('*') => {}
+        Some(_) => return Err("it is no Abaqus input: it does not begin with a keyword".into()),
+        None => return Err("it is no Abaqus input: it has no keyword".into()),
+    }
     let mut reader = Reader {
         blocks: vec![Block::default()],
         block: 0,
         instances: Vec::new(),
         section: Section::Other,
+        keyword: String::new(),
         begun: Vec::new(),
+        parts: BTreeMap::new(),
     };
-    let mut has_any = false;
-    for (n, line) in text.lines().enumerate() {
-        let line = line.trim();
-        if line.is_empty() || line.starts_with("**") {
-            continue;
-        }
-        let read = if line.starts_with('*') {
-            has_any = true;
-            reader.begin(&Keyword::of(line))
-        } else if has_any {
-            reader.data(line)
-        } else {
-            return Err("it is no Abaqus input: it does not begin with a keyword".into());
-        };
-        read.map_err(|what| at(n, what))?;
-    }
-    if !has_any {
-        return Err("it is no Abaqus input: it has no keyword".into());
-    }
-    reader.finished()
+    reader.file(text, deck)?;
+    reader.finished(&mut deck.budget)
+}
+
+/// Lines that are no comments, with their numbers.
+fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let lines = text.lines().map(str::trim).enumerate();
+    lines.filter(|(_, line)| !line.is_empty() && !line.starts_with("**"))
 }
 
 impl Reader {
-    fn begin(&mut self, keyword: &Keyword) -> Result<(), String> {
+    /// Reads a file: keywords and data, or data of the keyword before.
+    fn file(&mut self, text: &str, deck: &mut Deck) -> Result<(), String> {
+        for (n, line) in lines(text) {
+            if !self.keyword.is_empty() || line.starts_with('*') {
+                self.keyword.push_str(line);
+                if !line.ends_with(',') {
+                    let keyword = Keyword::of(&std::mem::take(&mut self.keyword));
+                    self.begin(&keyword, deck).map_err(|what| at(n, what))?;
+                }
+                continue;
+            }
+            self.data(line, &mut deck.budget)
+                .map_err(|what| at(n, what))?;
+        }
+        if self.keyword.is_empty() {
+            Ok(())
+        } else {
+            Err("its last keyword ends with a comma".to_owned())
+        }
+    }
+
+    /// Begins a keyword, and reads the data that it has in a file.
+    fn begin(&mut self, keyword: &Keyword, deck: &mut Deck) -> Result<(), String> {
+        if keyword.name != "INCLUDE" {
+            self.section(keyword)?;
+        }
+        let is_read = !matches!(self.section, Section::Skipped | Section::Other);
+        match keyword.get("INPUT") {
+            Some(name) if is_read || keyword.name == "INCLUDE" => {
+                deck.include(name, |deck, text| self.file(text, deck))
+            }
+            None if keyword.name == "INCLUDE" => Err("`*INCLUDE` names no file".to_owned()),
+            _ => Ok(()),
+        }
+    }
+
+    fn section(&mut self, keyword: &Keyword) -> Result<(), String> {
         if !self.begun.is_empty() {
             return Err("the element before has too few nodes".to_owned());
         }
@@ -156,6 +183,10 @@ impl Reader {
         self.section = match keyword.name.as_str() {
             "PART" => {
                 let name = keyword.get("NAME").ok_or("a part has no name")?;
+                let place = self.blocks.len();
+                if self.parts.insert(name.to_uppercase(), place).is_some() {
+                    return Err(format!("two parts have the name `{}`", shortened(name)));
+                }
                 self.blocks.push(Block {
                     name: name.to_owned(),
                     ..Block::default()
@@ -188,7 +219,7 @@ impl Reader {
             // Sets of the assembly are of instances.
             "ELSET" if keyword.get("INSTANCE").is_none() => {
                 let name = keyword.get("ELSET").ok_or("a set has no name")?.to_owned();
-                let set = self.blocks[self.block].set(&name, true);
+                let set = self.blocks[self.block].set(&name, true)?;
                 Section::Set(set, keyword.get("GENERATE").is_some())
             }
             _ => Section::Other,
@@ -205,15 +236,16 @@ impl Reader {
             return Ok(Section::Skipped);
         };
         let block = &mut self.blocks[self.block];
-        let set = keyword.get("ELSET").map(|name| {
-            let set = block.set(name, false);
-            block.mesh.parts[set].is_set = false;
-            set
-        });
+        let mut set = None;
+        if let Some(name) = keyword.get("ELSET") {
+            let place = block.set(name, false)?;
+            block.mesh.parts[place].is_set = false;
+            set = Some(place);
+        }
         Ok(Section::Elements(kind, nodes, set))
     }
 
-    fn data(&mut self, line: &str) -> Result<(), String> {
+    fn data(&mut self, line: &str, budget: &mut Budget) -> Result<(), String> {
         let cells = || line.split(',').map(str::trim);
         match self.section.clone() {
             Section::Nodes => {
@@ -241,7 +273,7 @@ impl Reader {
             }
             Section::Set(set, is_range) => {
                 let cells: Vec<&str> = cells().filter(|cell| !cell.is_empty()).collect();
-                self.blocks[self.block].extend(set, is_range, &cells)?;
+                self.blocks[self.block].extend(set, is_range, &cells, budget)?;
             }
             Section::Instance => {
                 let numbers: Result<Vec<f64>, String> = cells().map(number).collect();
@@ -277,7 +309,7 @@ impl Reader {
     }
 
     /// All blocks, or all instances of them, as one mesh.
-    fn finished(mut self) -> Result<Mesh, Fault> {
+    fn finished(mut self, budget: &mut Budget) -> Result<Mesh, Fault> {
         if !self.begun.is_empty() {
             return Err("the last element has too few nodes".into());
         }
@@ -293,50 +325,78 @@ impl Reader {
                 .collect();
         }
         for instance in &self.instances {
-            let block = self
-                .blocks
-                .iter()
-                .find(|block| block.name.eq_ignore_ascii_case(&instance.part));
-            let block = block.ok_or_else(|| {
+            let place = self.parts.get(&instance.part.to_uppercase());
+            let block = place.map(|&place| &self.blocks[place]).ok_or_else(|| {
                 let (name, part) = (shortened(&instance.name), shortened(&instance.part));
                 format!("the instance `{name}` is of a part `{part}` that is not there")
             })?;
-            first = instance.add(&block.mesh, first, &mut all)?;
+            first = instance.add(&block.mesh, first, &mut all, budget)?;
         }
         Ok(all)
     }
 }
 
 impl Block {
+    /// The set of a name.
+    fn set(&mut self, name: &str, is_set: bool) -> Result<usize, String> {
+        let parts = &mut self.mesh.parts;
+        let place = *self.sets.entry(name.to_uppercase()).or_insert(parts.len());
+        if place == MOST_PARTS {
+            return Err(format!("it has more than {MOST_PARTS} sets"));
+        }
+        if place == parts.len() {
+            parts.push(Part {
+                name: PartName {
+                    number: None,
+                    name: name.to_owned(),
+                },
+                is_set,
+                ..Part::default()
+            });
+        }
+        Ok(place)
+    }
+
     /// Adds elements to a set: numbers and names of sets, or a range.
-    fn extend(&mut self, set: usize, is_range: bool, cells: &[&str]) -> Result<(), String> {
+    fn extend(
+        &mut self,
+        set: usize,
+        is_range: bool,
+        cells: &[&str],
+        budget: &mut Budget,
+    ) -> Result<(), String> {
+        let parts = &mut self.mesh.parts;
         if is_range {
             let (first, last, step) = match cells {
                 [first, last] => (id(first)?, id(last)?, 1),
                 [first, last, step] => (id(first)?, id(last)?, id(step)?),
                 _ => return Err("a range has a first, a last and perhaps a step".to_owned()),
             };
-            let range = first..=last.max(first);
-            let within = self.places.range(range);
-            let of_step = within.filter(|(number, _)| (*number - first).is_multiple_of(step));
-            let places: Vec<u32> = of_step.map(|(_, place)| *place).collect();
-            self.mesh.parts[set].cells.extend(places);
+            for (number, &place) in self.places.range(first..=last.max(first)) {
+                budget.take(1, 2 * size_of::<u32>())?;
+                if (number - first).is_multiple_of(step) {
+                    parts[set].cells.push(place);
+                }
+            }
             return Ok(());
         }
         for cell in cells {
             if let Ok(element) = id(cell) {
                 // Others are of elements that are no solids.
                 if let Some(place) = self.places.get(&element) {
-                    self.mesh.parts[set].cells.push(*place);
+                    parts[set].cells.push(*place);
                 }
                 continue;
             }
             let name = cell.trim_matches('"');
-            let other = self.mesh.parts.iter().find(|part| part.name.name == name);
-            let other = other.map(|part| part.cells.clone());
+            let other = self.sets.get(&name.to_uppercase());
             let other =
-                other.ok_or_else(|| format!("no set `{}` comes before", shortened(name)))?;
-            self.mesh.parts[set].cells.extend(other);
+                *other.ok_or_else(|| format!("no set `{}` comes before", shortened(name)))?;
+            if other != set {
+                budget.take(parts[other].cells.len(), 2 * size_of::<u32>())?;
+                let cells = parts[other].cells.clone();
+                parts[set].cells.extend(cells);
+            }
         }
         Ok(())
     }
@@ -352,6 +412,9 @@ fn kind_of(word: &str) -> Result<Option<(Kind, usize)>, String> {
                 "axisymmetric elements `{}` are not read",
                 shortened(word)
             ));
+        }
+        _ if OTHER_SOLIDS.iter().any(|other| word.starts_with(other)) => {
+            return Err(format!("elements `{}` are not read", shortened(word)));
         }
         _ => return Ok(None),
     };

@@ -18,6 +18,19 @@ pub struct Array {
     pub values: Vec<f64>,
 }
 
+/// Names that arrays must have to be read.
+pub fn asked(request: &Request) -> Vec<&str> {
+    let of = |&quantity: &Quantity| -> Vec<&str> {
+        match request.columns.stated(quantity) {
+            Some(names) => names.iter().map(String::as_str).collect(),
+            None => of_array(quantity).to_vec(),
+        }
+    };
+    let mut names: Vec<&str> = Quantity::ALL.iter().flat_map(of).collect();
+    names.extend(request.columns.part_names());
+    names
+}
+
 /// Adds what arrays tell to the rows of a table, and leaves those of the parts that are wanted.
 pub fn with_arrays(
     mut table: Table,

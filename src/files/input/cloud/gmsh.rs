@@ -1,11 +1,16 @@
 //! Gmsh meshes, ASCII of formats 2.2 and 4.1: elements by their physical groups.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::Fault;
+use super::budget::Budget;
 use super::mesh::{Cell, Kind, Mesh, Part, as_place};
 use super::part::PartName;
 use super::text::{Words, of, shortened};
+
+/// Memory that an element of a group counts as (bytes): lists grow, and each takes time to be found.
+const ENTRY: usize = 32;
 
 /// Dimension and number of an entity or of a group.
 type Key = (u8, i64);
@@ -16,10 +21,11 @@ struct Reader {
     /// Names of groups.
     names: BTreeMap<Key, String>,
     /// Groups of entities.
-    groups: BTreeMap<Key, Vec<i64>>,
+    groups: BTreeMap<Key, Rc<[i64]>>,
     /// Elements of groups, and of entities of which none is in a group.
     of_group: BTreeMap<Key, Vec<u32>>,
     of_entity: BTreeMap<Key, Vec<u32>>,
+    budget: Budget,
 }
 
 /// Reads a mesh.
@@ -44,7 +50,10 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
     }
     let text = of(bytes);
     let mut words = Words::of(&text);
-    let mut reader = Reader::default();
+    let mut reader = Reader {
+        budget: Budget::of(bytes.len()),
+        ..Reader::default()
+    };
     let mut has_elements = false;
     while let Some(line) = words.line() {
         let read = match (line, is_new) {
@@ -103,7 +112,7 @@ impl Reader {
                         words.whole()?;
                     }
                 }
-                self.groups.insert((dimension, number), groups);
+                self.groups.insert((dimension, number), groups.into());
             }
         }
         Ok(())
@@ -156,11 +165,7 @@ impl Reader {
             };
             let group = tags.first().copied().filter(|group| *group != 0);
             let entity = tags.get(1).copied().unwrap_or(0);
-            self.book(
-                place,
-                (dimension, entity),
-                &group.into_iter().collect::<Vec<_>>(),
-            );
+            self.book(place, (dimension, entity), group.as_slice())?;
         }
         Ok(())
     }
@@ -177,7 +182,7 @@ impl Reader {
             for _ in 0..words.count()? {
                 let number = words.id()?;
                 if let Some((place, dimension)) = self.element(words, number, kind)? {
-                    self.book(place, (dimension, key.1), &groups);
+                    self.book(place, (dimension, key.1), &groups)?;
                 }
             }
         }
@@ -209,7 +214,8 @@ impl Reader {
         Ok(Some((place, if is_flat { 2 } else { 3 })))
     }
 
-    fn book(&mut self, place: u32, entity: Key, groups: &[i64]) {
+    fn book(&mut self, place: u32, entity: Key, groups: &[i64]) -> Result<(), String> {
+        self.budget.take(groups.len(), ENTRY)?;
         for group in groups {
             let of_group = self.of_group.entry((entity.0, *group)).or_default();
             of_group.push(place);
@@ -217,6 +223,7 @@ impl Reader {
         if groups.is_empty() {
             self.of_entity.entry(entity).or_default().push(place);
         }
+        Ok(())
     }
 
     /// Parts are the groups, of a mesh without any its entities.

@@ -304,8 +304,11 @@ impl Mesh {
         Ok(Table { columns })
     }
 
-    /// The place of a node, whose number one of something names.
-    fn node(&self, number: u64, what: &str, of: u64) -> Result<usize, Fault> {
+    /// The place of a node, whose number one of something names, in sorted nodes.
+    ///
+    /// # Errors
+    /// If it is not there.
+    pub fn node(&self, number: u64, what: &str, of: u64) -> Result<usize, Fault> {
         let found = self.nodes.binary_search_by_key(&number, |(n, _)| *n);
         found.map_err(|_| format!("{what} {of} names a node {number} that is not there").into())
     }

@@ -6,8 +6,12 @@
 
 mod abaqus;
 mod arrays;
+mod budget;
+mod columns;
 mod csv;
+mod deck;
 mod dyna;
+mod frames;
 mod gmsh;
 mod h5;
 mod mesh;
@@ -26,6 +30,7 @@ use ::sha2::{Digest, Sha256};
 
 use super::file;
 use super::schema::{FormatName, TakeName};
+use deck::Deck;
 use model::SurfaceFile;
 
 pub use part::Wanted;
@@ -50,6 +55,10 @@ const ENDINGS: &[(&str, FormatName)] = &[
     ("dyn", FormatName::Dyna),
     ("inp", FormatName::Abaqus),
     ("msh", FormatName::Gmsh),
+    ("lammpstrj", FormatName::Lammps),
+    ("dump", FormatName::Lammps),
+    ("xyz", FormatName::Xyz),
+    ("extxyz", FormatName::Xyz),
 ];
 
 /// Request for the content of a file.
@@ -142,16 +151,25 @@ pub fn read(
     format: FormatName,
     request: &Request,
 ) -> Result<(Table, SurfaceFile), Fault> {
-    let sha256 = digest(path)?;
+    let mut sha256 = digest(path)?;
     let text = || file::content(path, LONGEST, "a file of particles").map_err(Fault::from);
+    let mut deck = |read: fn(&str, &mut Deck) -> Result<mesh::Mesh, Fault>| {
+        let content = text()?;
+        let mut deck = Deck::of(path, &content);
+        let mesh = read(&text::of(&content), &mut deck)?;
+        sha256 = deck.sha256();
+        mesh.table(request)
+    };
     let table = match format {
         FormatName::Snapshot => snapshot::read(path, request)?,
         FormatName::Hdf5 => h5::read(path, request)?,
         FormatName::Csv => csv::read(&text()?, request)?,
         FormatName::Vtu => vtu::read(&text()?, request)?,
-        FormatName::Dyna => dyna::read(&text::of(&text()?))?.table(request)?,
-        FormatName::Abaqus => abaqus::read(&text::of(&text()?))?.table(request)?,
+        FormatName::Dyna => deck(dyna::read)?,
+        FormatName::Abaqus => deck(abaqus::read)?,
         FormatName::Gmsh => gmsh::read(&text()?)?.table(request)?,
+        FormatName::Lammps => frames::lammps(&text::of(&text()?), request)?,
+        FormatName::Xyz => frames::xyz(&text::of(&text()?), request)?,
     };
     table.check(request.dimension)?;
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());

@@ -2,6 +2,8 @@
 
 use super::Fault;
 
+/// Most parts of a file.
+pub const MOST_PARTS: usize = 1_000_000;
 /// Parts that a message lists.
 const LISTED: usize = 20;
 
@@ -34,6 +36,11 @@ impl PartName {
         }
     }
 
+    /// True of a name but for large and small letters.
+    fn is_nearly(&self, wanted: &Wanted) -> bool {
+        matches!(wanted, Wanted::Name(name) if self.name.eq_ignore_ascii_case(name))
+    }
+
     fn words(&self) -> String {
         let name = self.name.chars().take(64).collect::<String>();
         match (self.number, name.is_empty()) {
@@ -59,8 +66,15 @@ pub fn choose(parts: &[PartName], wanted: &[Wanted]) -> Result<Vec<bool>, Fault>
         }
         return Ok(vec![true; parts.len()]);
     }
+    let mut chosen = vec![false; parts.len()];
     for one in wanted {
-        if !parts.iter().any(|part| part.is(one)) {
+        let mut found: Vec<usize> = places(parts, |part| part.is(one));
+        if found.is_empty() {
+            // Large and small letters are the same to some programs.
+            found = places(parts, |part| part.is_nearly(one));
+            found.truncate(usize::from(found.len() == 1));
+        }
+        if found.is_empty() {
             let name = match one {
                 Wanted::Name(name) => name.clone(),
                 Wanted::Number(number) => number.to_string(),
@@ -75,9 +89,17 @@ pub fn choose(parts: &[PartName], wanted: &[Wanted]) -> Result<Vec<bool>, Fault>
                 format!("it has no part `{name}`: {there}"),
             ));
         }
+        for place in found {
+            chosen[place] = true;
+        }
     }
-    let is_wanted = |part: &PartName| wanted.iter().any(|one| part.is(one));
-    Ok(parts.iter().map(is_wanted).collect())
+    Ok(chosen)
+}
+
+fn places(parts: &[PartName], is_it: impl Fn(&PartName) -> bool) -> Vec<usize> {
+    (0..parts.len())
+        .filter(|&place| is_it(&parts[place]))
+        .collect()
 }
 
 fn list(parts: &[PartName]) -> String {

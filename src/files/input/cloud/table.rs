@@ -25,7 +25,8 @@ impl Columns {
     pub fn part_names(&self) -> Vec<&str> {
         match &self.part {
             Some(name) => vec![name],
-            None => vec!["part", "body", "part_id", "PartId"],
+            // In files of this program parts are pieces of bodies.
+            None => vec!["body", "part", "part_id", "PartId"],
         }
     }
 }

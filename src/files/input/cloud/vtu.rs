@@ -4,15 +4,18 @@ mod array;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use super::arrays::{Array, with_arrays};
+use super::arrays::{Array, asked, with_arrays};
+use super::budget::Budget;
 use super::mesh::{Cell, Kind, Mesh};
 use super::text::shortened;
 use super::{Fault, Request, Table, TakeName};
 use array::Layout;
 use model::Quantity;
 
-/// Most elements of the XML itself.
+/// Most elements of the XML itself, attributes of each, and names of spaces.
 const MOST_ELEMENTS: u32 = 100_000;
+const MOST_ATTRIBUTES: usize = 1000;
+const MOST_SPACES: usize = 100;
 /// Start of the element before raw data.
 const APPENDED: &[u8] = b"<AppendedData";
 
@@ -22,6 +25,9 @@ const APPENDED: &[u8] = b"<AppendedData";
 /// A fault of the file, or of what is asked of it.
 pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     let (head, appended) = split(bytes)?;
+    if !is_plain(&head) {
+        return Err("it is no XML file of VTK: it has too many attributes".into());
+    }
     let options = ParsingOptions {
         nodes_limit: MOST_ELEMENTS,
         ..ParsingOptions::default()
@@ -44,7 +50,22 @@ pub fn read(bytes: &[u8], request: &Request) -> Result<Table, Fault> {
     if pieces.next().is_some() {
         return Err("it has several pieces: save it as one".into());
     }
-    Piece::of(piece, &layout, bytes.len())?.table(request)
+    let asked = asked(request);
+    let mut reader = Reader {
+        layout,
+        asked,
+        budget: Budget::of(bytes.len()),
+    };
+    reader.piece(piece)?.table(request)
+}
+
+/// True of a text that is read in a time which grows as its length: each attribute of an element is
+/// compared with all others, and those of name spaces are kept for all elements within.
+fn is_plain(head: &str) -> bool {
+    let mut elements = head.split('<');
+    let attributes = |element: &str| element.bytes().filter(|&b| b == b'=').count();
+    elements.all(|element| attributes(element) <= MOST_ATTRIBUTES)
+        && head.matches("xmlns").count() <= MOST_SPACES
 }
 
 /// Data at the end of a file, and whether it is in base 64.
@@ -111,33 +132,123 @@ struct Piece {
     of_cells: Vec<Array>,
 }
 
-impl Piece {
-    fn of(piece: Node, layout: &Layout, length: usize) -> Result<Self, Fault> {
+/// Reader of the arrays of a file.
+struct Reader<'a> {
+    layout: Layout<'a>,
+    /// Names of the arrays that are read.
+    asked: Vec<&'a str>,
+    budget: Budget,
+}
+
+impl Reader<'_> {
+    fn piece(&mut self, piece: Node) -> Result<Piece, Fault> {
         let count = |name: &str| -> Result<usize, Fault> {
             let text = piece.attribute(name).unwrap_or("0").trim();
             let count = text.parse::<usize>().ok();
-            // Compressed numbers take some bytes at least.
-            let most = length.saturating_mul(1000).min(super::MOST);
-            let count = count.filter(|count| *count <= most);
-            count.ok_or_else(|| format!("its `{name}` is more than the file holds").into())
+            let count = count.filter(|count| *count <= super::MOST);
+            count.ok_or_else(|| format!("its `{name}` is more than a file may hold").into())
         };
         let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
         let places = child(child(piece, "Points")?, "DataArray")?;
-        let positions = array::read(places, 3 * points, layout);
+        let positions = self.numbers(places, 3 * points);
         let positions = positions.map_err(|what| format!("`Points`: {what}"))?;
-        let mut found = Self {
+        let mut found = Piece {
             positions,
             cells: Vec::new(),
-            of_points: arrays(piece, "PointData", points, layout)?,
+            of_points: self.arrays(piece, "PointData", points)?,
             of_cells: Vec::new(),
         };
         if cells > 0 && child(piece, "Cells").is_ok() {
-            found.cells = elements(child(piece, "Cells")?, cells, points, layout)?;
-            found.of_cells = arrays(piece, "CellData", cells, layout)?;
+            found.cells = self.elements(child(piece, "Cells")?, cells, points)?;
+            found.of_cells = self.arrays(piece, "CellData", cells)?;
         }
         Ok(found)
     }
 
+    /// So many numbers of an array.
+    fn numbers(&mut self, node: Node, values: usize) -> Result<Vec<f64>, String> {
+        self.budget.take(values, size_of::<f64>())?;
+        array::read(node, values, &self.layout)
+    }
+
+    /// The arrays of a kind that are asked for, and are numbers.
+    fn arrays(&mut self, piece: Node, of: &str, rows: usize) -> Result<Vec<Array>, Fault> {
+        let Ok(data) = child(piece, of) else {
+            return Ok(Vec::new());
+        };
+        let mut found = Vec::new();
+        for node in data
+            .children()
+            .filter(|node| node.has_tag_name("DataArray"))
+        {
+            let (name, components) = array::title(node)?;
+            if node.attribute("type") == Some("String") {
+                continue;
+            }
+            // Others have their names told alone.
+            let mut values = Vec::new();
+            if self.asked.contains(&&*name) {
+                let count = components.checked_mul(rows).ok_or("it is too large")?;
+                values = self
+                    .numbers(node, count)
+                    .map_err(|what| format!("the array `{}`: {what}", shortened(&name)))?;
+            }
+            found.push(Array {
+                name,
+                components,
+                values,
+            });
+        }
+        Ok(found)
+    }
+
+    /// The elements that are solids or of a plane, by their numbers from one on.
+    fn elements(&mut self, cells: Node, count: usize, points: usize) -> Result<Vec<Cell>, Fault> {
+        let mut named = |name: &str, values: usize| -> Result<Vec<f64>, Fault> {
+            let mut arrays = cells.children();
+            let found = arrays.find(|node| node.attribute("Name") == Some(name));
+            let found = found.ok_or_else(|| format!("its `Cells` have no `{name}`"))?;
+            let read = self.numbers(found, values);
+            Ok(read.map_err(|what| format!("`{name}`: {what}"))?)
+        };
+        let kinds = named("types", count)?;
+        let offsets = named("offsets", count)?;
+        let wrong = "its `offsets` do not grow";
+        let whole = |x: f64| -> Result<usize, Fault> {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
+            let found = ((0.0..1e12).contains(&x) && x.fract() == 0.0).then_some(x as usize);
+            found.ok_or_else(|| format!("{x} is no number of a point").into())
+        };
+        let last = offsets.last().map_or(Ok(0), |x| whole(*x))?;
+        if last > count.saturating_mul(1000) {
+            return Err(wrong.into());
+        }
+        let connectivity = named("connectivity", last)?;
+        let mut found = Vec::new();
+        let mut first = 0;
+        for (number, (kind, offset)) in (1..).zip(kinds.iter().zip(&offsets)) {
+            let end = whole(*offset)?;
+            let nodes = connectivity.get(first..end).ok_or(wrong)?;
+            first = end;
+            let Some(kind) = kind_of(*kind, number)? else {
+                continue;
+            };
+            let mut corners = Vec::new();
+            for node in nodes.iter().take(kind.corners()) {
+                let node = whole(*node)?;
+                if node >= points {
+                    return Err(format!("cell {number} names a point {node} of {points}").into());
+                }
+                corners.push(node as u64 + 1);
+            }
+            let cell = Cell::new(kind, number, &corners);
+            found.push(cell.ok_or_else(|| format!("cell {number} has too few points"))?);
+        }
+        Ok(found)
+    }
+}
+
+impl Piece {
     /// The particles with what arrays tell of them.
     fn table(self, request: &Request) -> Result<Table, Fault> {
         let (columns, arrays) = if self.cells.is_empty() {
@@ -181,77 +292,6 @@ impl Piece {
     }
 }
 
-/// All arrays of a kind that are numbers.
-fn arrays(piece: Node, of: &str, rows: usize, layout: &Layout) -> Result<Vec<Array>, Fault> {
-    let Ok(data) = child(piece, of) else {
-        return Ok(Vec::new());
-    };
-    let mut found = Vec::new();
-    for node in data
-        .children()
-        .filter(|node| node.has_tag_name("DataArray"))
-    {
-        let (name, components) = array::title(node)?;
-        if node.attribute("type") == Some("String") {
-            continue;
-        }
-        let values = components.checked_mul(rows).ok_or("it is too large")?;
-        let values = array::read(node, values, layout)
-            .map_err(|what| format!("the array `{}`: {what}", shortened(&name)))?;
-        found.push(Array {
-            name,
-            components,
-            values,
-        });
-    }
-    Ok(found)
-}
-
-/// The elements that are solids or of a plane, by their numbers from one on.
-fn elements(cells: Node, count: usize, points: usize, layout: &Layout) -> Result<Vec<Cell>, Fault> {
-    let named = |name: &str, values: usize| -> Result<Vec<f64>, Fault> {
-        let mut arrays = cells.children();
-        let found = arrays.find(|node| node.attribute("Name") == Some(name));
-        let found = found.ok_or_else(|| format!("its `Cells` have no `{name}`"))?;
-        let read = array::read(found, values, layout);
-        Ok(read.map_err(|what| format!("`{name}`: {what}"))?)
-    };
-    let kinds = named("types", count)?;
-    let offsets = named("offsets", count)?;
-    let wrong = "its `offsets` do not grow";
-    let whole = |x: f64| -> Result<usize, Fault> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
-        let found = ((0.0..1e12).contains(&x) && x.fract() == 0.0).then_some(x as usize);
-        found.ok_or_else(|| format!("{x} is no number of a point").into())
-    };
-    let last = offsets.last().map_or(Ok(0), |x| whole(*x))?;
-    if last > count.saturating_mul(1000) {
-        return Err(wrong.into());
-    }
-    let connectivity = named("connectivity", last)?;
-    let mut found = Vec::new();
-    let mut first = 0;
-    for (number, (kind, offset)) in (1..).zip(kinds.iter().zip(&offsets)) {
-        let end = whole(*offset)?;
-        let nodes = connectivity.get(first..end).ok_or(wrong)?;
-        first = end;
-        let Some(kind) = kind_of(*kind, number)? else {
-            continue;
-        };
-        let mut corners = Vec::new();
-        for node in nodes.iter().take(kind.corners()) {
-            let node = whole(*node)?;
-            if node >= points {
-                return Err(format!("cell {number} names a point {node} of {points}").into());
-            }
-            corners.push(node as u64 + 1);
-        }
-        let cell = Cell::new(kind, number, &corners);
-        found.push(cell.ok_or_else(|| format!("cell {number} has too few points"))?);
-    }
-    Ok(found)
-}
-
 /// Form of a cell by VTK's number; nothing of points and lines.
 fn kind_of(number: f64, cell: u64) -> Result<Option<Kind>, Fault> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small
@@ -271,3 +311,6 @@ fn kind_of(number: f64, cell: u64) -> Result<Option<Kind>, Fault> {
         _ => return Err(format!("cell {cell} is of a type {number} that is not read").into()),
     }))
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,6 +41,10 @@ choices! {
         Abaqus,
         /// Gmsh meshes.
         Gmsh,
+        /// LAMMPS dumps.
+        Lammps,
+        /// Extended XYZ.
+        Xyz,
     }
     /// Parts of a mesh that become particles.
     TakeName {

@@ -3,8 +3,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{FormatName, NamesParams, PartsParams, Point, TakeName, TurnsParams};
+use super::{FormatName, NamesParams, PartsParams, Point, ShapeParams, TakeName, TurnsParams};
 use crate::input::quantity::{Length, Mass, Placed, Time};
+use model::Axis;
 
 tables! {
     /// `particles`
@@ -25,6 +26,8 @@ tables! {
         time_unit: Option<Placed<Time>>, Positive;
         /// What the file calls its columns or arrays.
         columns: Option<Spanned<ColumnsParams>>;
+        /// Mirrors them, and all that has directions, across the origin along an axis, before they are turned.
+        mirror: Option<Spanned<Axis>> => "none";
         /// Turns them.
         turn: Option<Spanned<TurnsParams>> => "none";
         /// Moves them, once they are turned.
@@ -68,5 +71,12 @@ impl super::BodyParams {
         let shape = self.shape.as_ref().map(Spanned::span);
         let particles = self.particles.as_ref().map(Spanned::span);
         shape.or(particles).unwrap_or_else(|| self.name.span())
+    }
+
+    /// True if a file tells what it is.
+    pub fn is_of_file(&self) -> bool {
+        let of_file = |shape: &ShapeParams| shape.stl.is_some() || shape.obj.is_some();
+        let shape = self.shape.as_ref();
+        self.particles.is_some() || shape.is_some_and(|shape| of_file(shape.get_ref()))
     }
 }

@@ -93,6 +93,8 @@ tables! {
         file: Spanned<String>;
         /// Length of one unit of the file.
         unit: Placed<Length>, Positive;
+        /// Mirrors the surface across the file's origin along an axis, before it is turned.
+        mirror: Option<Spanned<Axis>> => "none";
         /// Where the file's origin stands.
         at: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
         /// Turns the surface about the file's origin, before it is placed.

@@ -22,6 +22,8 @@ use populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
 const MOST_SITES: u64 = 100_000_000_000;
+/// Most bodies: each pair of them is looked at.
+const MOST_BODIES: usize = 4096;
 /// Range of the first layer above a symmetry plane, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
@@ -70,6 +72,10 @@ impl Reader<'_> {
     ) -> Result<Vec<Body>, Diagnostic> {
         if params.is_empty() {
             return Err(Diagnostic::new(0..0, "the case has no `[[body]]`"));
+        }
+        if let Some(table) = params.get(MOST_BODIES) {
+            let title = format!("more than {MOST_BODIES} bodies");
+            return Err(Diagnostic::new(table.get_ref().name.span(), title));
         }
         let mut bodies: Vec<Body> = Vec::new();
         for table in params {
@@ -313,7 +319,11 @@ impl Reader<'_> {
                 "the body `{}` has no particle above the symmetry planes",
                 body.name
             );
-            return Err(warn(title).help("a symmetry plane keeps the side of larger coordinates"));
+            let mut help = "a symmetry plane keeps the side of larger coordinates".to_owned();
+            if params.is_of_file() {
+                help.push_str(": `mirror` of the file puts it there, as in `mirror = \"x\"`");
+            }
+            return Err(warn(title).help(help));
         }
         for plane in symmetry {
             self.check_plane(params, body, symmetry, plane)?;

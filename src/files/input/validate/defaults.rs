@@ -1,5 +1,7 @@
 //! Measures of a body because of its shape: plates, bars and targets.
 
+use nalgebra::{Matrix3, SymmetricEigen};
+
 use model::{Bar, Case, Include, MeasureKind, Primitive, Slab, Solid, Vec3};
 
 /// A plate is at most this part as thick as it is wide.
@@ -13,6 +15,9 @@ const ROUND: f64 = 1.5;
 
 /// A target is at least so many times as large as what strikes it.
 const LARGE: f64 = 1.5;
+
+/// Axes that are turned by less than this (rad) are those of space.
+const TURNED: f64 = 1e-3;
 
 /// True if a direction is along each symmetry plane; if it `may_cross`, also normal to one.
 pub fn suits_symmetry(case: &Case, way: &[f64; 3], may_cross: bool) -> bool {
@@ -28,10 +33,11 @@ struct Own {
     axes: [Vec3; 3],
     /// Lengths of the edges (m).
     sides: [f64; 3],
+    /// True if it has faces that a measure of a plate could count from.
+    has_faces: bool,
 }
 
-/// The axes of boxes, cylinders, prisms and what is cut from them, turned as they are; other shapes have no
-/// faces that a measure could count from.
+/// The axes of boxes, cylinders, prisms and what is cut from them, turned as they are.
 fn axes_of(solid: &Solid) -> Option<[Vec3; 3]> {
     match solid {
         Solid::Primitive(
@@ -41,6 +47,33 @@ fn axes_of(solid: &Solid) -> Option<[Vec3; 3]> {
         Solid::Difference(base, _) => axes_of(base),
         _ => None,
     }
+}
+
+/// The principal axes of what a file tells: of a surface, or of particles; its images behind symmetry
+/// planes, which lie in the same axes, with it.
+fn principal_axes(case: &Case, solid: &Solid) -> Option<[Vec3; 3]> {
+    let Solid::Primitive(form, place) = solid else {
+        return None;
+    };
+    let own = match form {
+        Primitive::Mesh(mesh) => mesh.covariance(),
+        Primitive::Cloud(cloud) => cloud.covariance(),
+        _ => return None,
+    };
+    let mut covariance = place.turn * own * place.turn.transpose();
+    for plane in &case.symmetry {
+        let a = plane.axis.index();
+        for b in (0..3).filter(|&b| b != a) {
+            (covariance[(a, b)], covariance[(b, a)]) = (0.0, 0.0);
+        }
+    }
+    let beside = covariance - Matrix3::from_diagonal(&covariance.diagonal());
+    let axes = if beside.amax() <= TURNED * covariance.trace() {
+        Matrix3::identity()
+    } else {
+        SymmetricEigen::new(covariance).eigenvectors
+    };
+    Some([0, 1, 2].map(|a| axes.column(a).into_owned()))
 }
 
 /// Ends (m) of a body along a unit vector; across symmetry planes it goes on as far as above them.
@@ -57,7 +90,10 @@ fn reach(case: &Case, body: usize, way: &Vec3) -> [f64; 2] {
 
 impl Own {
     fn of(case: &Case, body: usize) -> Option<Self> {
-        let mut axes = axes_of(&case.bodies[body].shape.solid(case.dimension))?;
+        let solid = case.bodies[body].shape.solid(case.dimension);
+        let faces = axes_of(&solid);
+        let has_faces = faces.is_some();
+        let mut axes = faces.or_else(|| principal_axes(case, &solid))?;
         // A half of a symmetric body has its sides on the positive axes.
         for axis in &mut axes {
             if axis.iter().any(|&c| c == -1.0) {
@@ -70,7 +106,11 @@ impl Own {
         };
         axes.sort_by(|a, b| side(a).total_cmp(&side(b)));
         let sides = axes.each_ref().map(side);
-        Some(Self { axes, sides })
+        Some(Self {
+            axes,
+            sides,
+            has_faces,
+        })
     }
 
     fn is_thin(&self) -> bool {
@@ -105,7 +145,7 @@ fn striker(case: &Case, body: usize) -> Option<(Vec3, usize)> {
 /// else the one that is struck most squarely.
 pub fn struck_face(case: &Case, body: usize) -> Option<[f64; 3]> {
     let (velocity, other) = striker(case, body)?;
-    let own = Own::of(case, body)?;
+    let own = Own::of(case, body).filter(|own| own.has_faces)?;
     let free = |axis: &&Vec3| suits_symmetry(case, &(**axis).into(), false);
     let axis = match own.axes.iter().find(free) {
         Some(axis) if own.is_thin() && *axis == own.axes[0] => axis,

@@ -59,7 +59,11 @@ impl MeshReader<'_> {
         }
         let turn = params.turn.as_ref();
         let turn = turn.map(|turn| (unit(*turn.axis.get_ref()), turn.angle.get_ref().si));
+        let mirror = params.mirror.as_ref().map(|axis| axis.get_ref().index());
         for x in soup.iter_mut().flatten() {
+            if let Some(axis) = mirror {
+                x[axis] = -x[axis];
+            }
             let scaled = x.map(|c| c * unit_length);
             let turned = turn.map_or(scaled, |(axis, angle)| turned(&scaled, &axis, angle));
             *x = std::array::from_fn(|a| turned[a] + at[a]);

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use toml::Spanned;
 
+use super::axis;
 use super::meshes::missing_file;
 use super::shapes::Shapes;
 use super::solids::turns;
@@ -76,7 +77,8 @@ impl Files<'_> {
         let Some(format) = stated.or_else(|| cloud::format_of(&path)) else {
             let title = "its ending does not tell what is in the file: state its `format`";
             return Err(Diagnostic::new(params.file.span(), title).help(
-                "one of \"csv\", \"snapshot\", \"hdf5\", \"vtu\", \"dyna\", \"abaqus\", \"gmsh\"",
+                "one of \"csv\", \"snapshot\", \"hdf5\", \"vtu\", \"dyna\", \"abaqus\", \"gmsh\", \
+                 \"lammps\", \"xyz\"",
             ));
         };
         let request = self.request(params, format)?;
@@ -118,7 +120,11 @@ impl Files<'_> {
             let title = "only a mesh has elements and nodes to `take`";
             return Err(Diagnostic::new(given.span(), title));
         }
-        let has_columns = matches!(format, FormatName::Csv | FormatName::Hdf5 | FormatName::Vtu);
+        let is_deck = matches!(
+            format,
+            FormatName::Dyna | FormatName::Abaqus | FormatName::Gmsh
+        );
+        let has_columns = !is_deck && format != FormatName::Snapshot;
         if let (false, Some(given)) = (has_columns, &params.columns) {
             let title = "a file of this format has no `columns` to name";
             return Err(Diagnostic::new(given.span(), title));
@@ -236,7 +242,7 @@ impl Files<'_> {
         }
     }
 
-    /// Turns and moves particles and all that has directions.
+    /// Mirrors, turns and moves particles and all that has directions.
     fn place(
         &self,
         params: &ParticlesParams,
@@ -249,6 +255,17 @@ impl Files<'_> {
             spacing,
             folder: self.folder,
         };
+        if let Some(name) = &params.mirror {
+            let n = axis(name, self.dimension)?.index();
+            let mut mirror = nalgebra::Matrix3::identity();
+            mirror[(n, n)] = -1.0;
+            for x in &mut *positions {
+                x[n] = -x[n];
+            }
+            for (quantity, values) in &mut rows.columns {
+                turned(*quantity, values, &mirror);
+            }
+        }
         let (lower, upper) = ends(positions);
         let middle = (lower + upper) * 0.5;
         for (turn, about) in turns(&shapes, params.turn.as_ref(), middle)? {
@@ -269,7 +286,7 @@ impl Files<'_> {
     }
 }
 
-/// Turns rows of vectors or symmetric tensors.
+/// Turns or mirrors rows of vectors or symmetric tensors.
 fn turned(quantity: Quantity, values: &mut [f64], turn: &nalgebra::Matrix3<f64>) {
     match quantity {
         Quantity::Velocity | Quantity::HourglassDisplacement => {

@@ -212,6 +212,43 @@ fn triangles_that_cut_through_each_other_are_found() {
     assert!((crossing.at[0] - 1.0).abs() < 1e-12, "{crossing:?}");
 }
 
+#[test]
+fn parts_that_overlap_are_refused() {
+    let cube = cuboid([0.0; 3], [10.0; 3]);
+    let with = |lower: [f64; 3], upper: [f64; 3]| {
+        let all = [cube.clone(), cuboid(lower, upper)].concat();
+        Mesh::mend(&all, 1.0).map(|mesh| mesh.volume())
+    };
+    for (lower, upper) in [
+        // Faces in one plane, of a larger part and of one of the same size.
+        ([5.0, 0.0, 0.0], [15.0, 10.0, 10.0]),
+        ([1.0, 0.0, 0.0], [11.0, 10.0, 10.0]),
+        // Within, at the faces.
+        ([0.0; 3], [5.0; 3]),
+        // Edges through faces.
+        ([5.0, 2.0, 2.0], [15.0, 8.0, 8.0]),
+    ] {
+        let error = with(lower, upper).unwrap_err().to_string();
+        assert!(error.contains("its parts overlap"), "{error}");
+    }
+    // A cavity, a part beside it, and one that touches it within rounding.
+    assert!((with([2.0; 3], [8.0; 3]).unwrap() - 1000.0 + 216.0).abs() < 1e-9);
+    for edge in [11.0, 10.0, 10.0 - 1e-6] {
+        let volume = with([edge, 1.0, 1.0], [15.0, 5.0, 5.0]).unwrap();
+        assert!(
+            (volume - 1000.0 - 16.0 * (15.0 - edge)).abs() < 1e-9,
+            "{edge}"
+        );
+    }
+    // Many in one another.
+    let nested = (0..100).flat_map(|n| cuboid([-1.0 - f64::from(n); 3], [1.0 + f64::from(n); 3]));
+    let error = Mesh::mend(&nested.collect::<Vec<_>>(), 0.1).unwrap_err();
+    assert!(
+        error.to_string().contains("more than 64 of its parts"),
+        "{error}"
+    );
+}
+
 /// Against the counts of a grid.
 #[test]
 fn volumes_above_planes_are_those_of_what_is_left() {

@@ -1,7 +1,8 @@
 //! Parts in their places in an assembly.
 
 use crate::input::cloud::Fault;
-use crate::input::cloud::mesh::{Mesh, Part, as_place};
+use crate::input::cloud::budget::Budget;
+use crate::input::cloud::mesh::{Cell, Mesh, Part, as_place};
 use crate::input::cloud::part::PartName;
 use model::{Vec3, rotation};
 
@@ -30,7 +31,24 @@ impl Instance {
     }
 
     /// Adds a part in its place, with numbers of nodes beyond `first`; gives the last number.
-    pub fn add(&self, part: &Mesh, first: u64, all: &mut Mesh) -> Result<u64, Fault> {
+    ///
+    /// # Errors
+    /// If that is more than may be numbered, or than a file of its length may take.
+    pub fn add(
+        &self,
+        part: &Mesh,
+        first: u64,
+        all: &mut Mesh,
+        budget: &mut Budget,
+    ) -> Result<u64, Fault> {
+        // Lists have room for twice as much when they grow.
+        budget.take(part.nodes.len(), 2 * size_of::<(u64, [f64; 3])>())?;
+        budget.take(part.cells.len(), 2 * size_of::<Cell>() + size_of::<u32>())?;
+        for set in &part.parts {
+            budget.take(set.cells.len(), size_of::<u32>())?;
+            let name = self.name.len() + set.name.name.len();
+            budget.take(1, 2 * size_of::<Part>() + name)?;
+        }
         let mut last = first;
         let mut beyond = |number: u64| {
             let number = first

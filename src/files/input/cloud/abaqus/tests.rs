@@ -1,7 +1,12 @@
 //! Abaqus inputs as they come, and as they should not.
 
-use super::read;
-use crate::input::cloud::mesh::Kind;
+use crate::input::cloud::Fault;
+use crate::input::cloud::deck::Deck;
+use crate::input::cloud::mesh::{Kind, Mesh};
+
+fn read(text: &str) -> Result<Mesh, Fault> {
+    super::read(text, &mut Deck::default())
+}
 
 const FLAT: &str = "*Heading\n** a comment\n*Node\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 1., 1., 0.\n\
     4, 0., 1., 0.\n5, 0., 0., 1.\n6, 1., 0., 1.\n7, 1., 1., 1.\n8, 0., 1., 1.\n\
@@ -59,7 +64,18 @@ fn what_cannot_be_read_is_told_with_its_line() {
     for (text, said) in [
         ("", "no Abaqus input"),
         ("solid x", "no Abaqus input"),
-        ("*Include, input=a.inp", "line 1: `*INCLUDE` is not read"),
+        (
+            "*Include, input=a.inp",
+            "line 1: cannot include `a.inp`: the deck is in no folder",
+        ),
+        ("*Include\n", "line 1: `*INCLUDE` names no file"),
+        ("*Imperfection\n", "line 1: `*IMPERFECTION` is not read"),
+        ("*Node, nset=a,\n", "its last keyword ends with a comma"),
+        ("*Element, type=PC3D\n", "elements `PC3D` are not read"),
+        (
+            "*Part, name=b\n*Part, name=B\n",
+            "line 2: two parts have the name `B`",
+        ),
         ("*Node\n1, 0, 0, inf", "line 2: `inf` is no number"),
         ("*Node\n0, 0, 0, 0", "line 2: `0` is no number of a node"),
         ("*Node, system=C\n1, 0, 0, 0", "cylindrical or spherical"),
@@ -89,4 +105,16 @@ fn what_cannot_be_read_is_told_with_its_line() {
         let words = read(text).unwrap_err().words;
         assert!(words.contains(said), "{text:?}: {words}");
     }
+}
+
+#[test]
+fn names_are_the_same_in_large_and_small_letters() {
+    let text = format!(
+        "{FLAT}*ELEMENT,\nTYPE=C3D4,\n  elset=CUBE\n3, 1, 2, 3, 5\n*elset, elset=Both\nCube\n"
+    );
+    let mesh = read(&text).unwrap();
+    let sets = mesh.parts.iter();
+    let sets = sets.map(|part| (&*part.name.name, part.cells.len()));
+    let expected = [("cube", 2), ("tips", 1), ("all", 2), ("both", 4)];
+    assert_eq!(sets.collect::<Vec<_>>(), expected);
 }
