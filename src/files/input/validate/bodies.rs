@@ -22,8 +22,8 @@ use populate;
 
 /// Bounding lattices beyond this are a slip in a unit rather than a body.
 const MOST_SITES: u64 = 100_000_000_000;
-/// Most bodies: each pair of them is looked at.
-const MOST_BODIES: usize = 4096;
+/// Most bodies.
+const MOST_BODIES: usize = 100_000;
 /// Range of the first layer above a symmetry plane, in spacings, so that particles neither
 /// sit on their own mirror images nor leave a gap.
 const FIRST_LAYER: (f64, f64) = (0.25, 0.75);
