@@ -45,11 +45,12 @@ macro_rules! point_batch {
                 plastic_energy: [0.0; LANES],
             };
 
-            /// Speed (m/s) of the artificial viscosity at point `k`: see [`viscous_speed`].
+            /// Speed (m/s) of the artificial viscosity at point `k`, whose linear part takes a share of that of
+            /// sound: see [`viscous_speed`].
             #[inline(always)]
             #[must_use]
-            pub fn viscous_speed(&self, k: usize) -> f64 {
-                viscous_speed(self.sound_speed[k], self.pressure[k], self.damage[k])
+            pub fn viscous_speed(&self, k: usize, share: f64) -> f64 {
+                viscous_speed(share * self.sound_speed[k], self.pressure[k], self.damage[k])
             }
         }
     };

@@ -2,22 +2,25 @@
 
 use serde::Deserialize;
 
+use crate::at_least;
 use crate::declare::{Constants, Value};
 use numerics::counter::exponential;
 
 /// Damage of matter that has failed.
 pub const FAILED: f64 = 1.0;
 
-/// Speed (m/s) of the artificial viscosity at a point, from that of sound (m/s), the pressure (Pa) and the damage.
+/// Speed (m/s) of the artificial viscosity at a point, from that of its linear part (m/s), the pressure (Pa) and the
+/// damage.
 ///
-/// Failed matter without pressure bears no stress: there are no waves in it that viscosity could damp.
+/// It is zero in failed matter without pressure, which bears no stress and has no waves that viscosity could damp, and
+/// positive elsewhere, in a cold gas too.
 #[inline(always)]
 #[must_use]
-pub fn viscous_speed(sound_speed: f64, pressure: f64, damage: f64) -> f64 {
+pub fn viscous_speed(linear: f64, pressure: f64, damage: f64) -> f64 {
     if damage >= FAILED && pressure == 0.0 {
         0.0
     } else {
-        sound_speed
+        at_least(linear, f64::MIN_POSITIVE)
     }
 }
 
@@ -310,3 +313,19 @@ macro_rules! failure_laws {
     };
 }
 pub(super) use failure_laws;
+
+#[cfg(test)]
+mod tests {
+    use super::viscous_speed;
+
+    #[test]
+    fn only_dust_has_no_viscosity() {
+        assert_eq!(viscous_speed(5e3, 0.0, 1.0), 0.0);
+        assert_eq!(viscous_speed(5e3, -0.0, 1.0), 0.0);
+        for (pressure, damage) in [(1.0, 1.0), (0.0, 0.9), (-1.0, 0.0)] {
+            assert_eq!(viscous_speed(5e3, pressure, damage), 5e3);
+        }
+        assert!(viscous_speed(0.0, 0.0, 0.0) > 0.0, "a cold gas closes");
+        assert!(viscous_speed(f64::NAN, 0.0, 0.0).is_nan());
+    }
+}

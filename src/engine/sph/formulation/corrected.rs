@@ -290,7 +290,7 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
             for c in 0..9 {
                 own[c] = stress[c].0[k];
             }
-            let viscous_speed = self.limiter.0[k] * after.viscous_speed(k);
+            let viscous_speed = after.viscous_speed(k, self.limiter.0[k]);
             let state = [after.density[k], after.sound_speed[k], viscous_speed];
             // SAFETY: by the contract of this function.
             unsafe {

@@ -37,7 +37,7 @@ impl Show for &ShowStress<'_> {
                 after.pressure[k],
                 &[s(0), s(1), s(2), s(3), s(4), s(5)],
                 after.density[k],
-                after.viscous_speed(k),
+                after.viscous_speed(k, 1.0),
             );
             // SAFETY: by the contract of this function.
             unsafe { self.set(index, record) };

@@ -536,7 +536,7 @@ impl Show for ShowTotal<'_> {
             for c in 0..9 {
                 own[c] = expansion * stress[c].0[k];
             }
-            let viscous_speed = total.limiter.0[k] * after.viscous_speed(k);
+            let viscous_speed = after.viscous_speed(k, total.limiter.0[k]);
             let state = [after.density[k], after.sound_speed[k], viscous_speed];
             let expands = total.determinant.0[k];
             let torn = [
