@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::common::outcome::{advance, start};
 use crate::common::{body, case};
+use crate::physics_support::{self, inline, run_to};
 use engine::step::Simulation;
 use model::{Shape, Vec3};
 
@@ -51,4 +52,55 @@ fn a_cloud_over_a_hundred_body_sizes_costs_what_the_body_does() {
         );
         assert!(spread <= 1.2 * compact, "{factor}: {spread} for {compact}");
     }
+}
+
+/// A quarter of a sphere of 3.18 mm that has gone through a plate of .84 mm at 7.2 km/s, in a glass of this seed.
+fn quarter_of_a_cloud(seed: u32) -> Simulation {
+    let text = format!(
+        "dimension = 3\nspacing = \"0.14 mm\"\n[run]\nend_time = \"6 us\"\n\
+         [time_step]\ncourant = 0.65\nforce = 0.2\ncontact = 1.0\n\
+         [material.core]\nlibrary = \"aluminium-2024-ductile\"\nfailure.johnson_cook = \"none\"\nfailure.fracture_energy = \"14 kJ/m^2\"\n\
+         [material.6061]\nlibrary = \"aluminium-6061-ductile\"\n\
+         [[body]]\nname = \"bumper\"\nmaterial = \"6061\"\nlattice = {{ kind = \"glass\", seed = {} }}\n\
+         shape.cylinder = {{ axis = \"z\", radius = \"10 mm\", length = \"0.84 mm\", centre = [0, 0, \"0.42 mm\"] }}\n\
+         spacing = {{ inner = \"0.14 mm\", outer = \"0.28 mm\", at = [0, 0, 0], axis = \"z\", within = \"4 mm\" }}\n\
+         [[body]]\nname = \"sphere\"\nmaterial = \"core\"\nlattice = {{ kind = \"glass\", seed = {seed} }}\n\
+         shape.sphere = {{ centre = [0, 0, \"3 mm\"], radius = \"1.59 mm\" }}\n\
+         velocity = [0, 0, \"-7.20 km/s\"]\ntouch = {{ body = \"bumper\", direction = \"-z\" }}\n\
+         [[symmetry]]\naxis = \"x\"\n[[symmetry]]\naxis = \"y\"\n",
+        seed + 50
+    );
+    physics_support::start(inline(&text))
+}
+
+/// Particles that fly towards a symmetry plane go on as others do in a whole model: where a wall is, 50.8 mm behind the
+/// plate, the cloud is as dense at the planes as beside them. Eight whole models have 1.00 ± .06 here; 2.1 if dust sticks
+/// to its images.
+#[test]
+#[ignore = "slow: three clouds of a quarter"]
+fn a_quarter_is_as_dense_at_its_planes_as_beside_them() {
+    let (mut near, mut all) = (0.0, 0.0);
+    for seed in 1..4 {
+        let mut s = quarter_of_a_cloud(seed);
+        run_to(&mut s, 6e-6);
+        for i in 0..s.particles.owned() {
+            let (x, v) = (s.particles.position[i], s.particles.velocity[i]);
+            if v[2] > -300.0 {
+                continue;
+            }
+            let time = (-50.8e-3 - x[2]) / v[2];
+            let at = [0, 1].map(|a| (x[a] + v[a] * time).abs());
+            if libm::hypot(at[0], at[1]) > 6e-3 {
+                continue;
+            }
+            let momentum = -s.particles.mass[i] * v[2];
+            for distance in at {
+                near += if distance < 0.1e-3 { momentum } else { 0.0 };
+                all += if distance < 2e-3 { momentum } else { 0.0 };
+            }
+        }
+    }
+    let denser = 20.0 * near / all;
+    println!("{denser:.2} times as dense within .1 mm of the planes as within 2 mm");
+    assert!((0.5..1.5).contains(&denser), "{denser}");
 }
