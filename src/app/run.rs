@@ -66,13 +66,11 @@ pub fn run(args: &RunArgs) -> u8 {
             return warn(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
-        // Held to the end.
-        let lock = match RunFolder::at(&out).take_new(comm, args.force, args.common.ignore_lock) {
-            Ok(lock) => lock,
-            Err(error) => return warn(comm, &format!("error: {error}")),
-        };
-        let warnings = lock.iter().flat_map(|lock| lock.warnings.iter().cloned());
-        start(launch, &args.common, case, &out, args.force, warnings)
+        let mut folder = RunFolder::at(&out);
+        match folder.take_new(comm, args.force, args.common.ignore_lock) {
+            Ok(more) => start(launch, &args.common, case, &folder, args.force, more),
+            Err(error) => warn(comm, &format!("error: {error}")),
+        }
     })
 }
 

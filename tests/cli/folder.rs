@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::program::{
-    Ended, WHIPPLE, assert_same, coarse_run, command, end, quarter_impact, ranks, signal, start,
-    status, strike,
+    Ended, Running, WHIPPLE, assert_same, coarse_run, command, end, quarter_impact, ranks, signal,
+    start, status, strike,
 };
 
 fn info(run: &Path) -> String {
@@ -151,6 +151,78 @@ fn a_folder_belongs_to_one_run_at_a_time() {
     let reference = place.path().join("reference");
     end(coarse_run(1, &reference).args(["--set", "output.checkpoint_every_steps=10"])).with_code(0);
     assert_same(&run, &reference);
+}
+
+/// A run that is held up in its middle, with checkpoints at steps 10 and 20.
+fn paused(run: &Path) -> Running {
+    let mut command = coarse_run(2, run);
+    strike(&mut command, "pause:0:30");
+    let running = start(command.args(["--set", "output.checkpoint_every_steps=10"]));
+    running.until_step(run, 29);
+    running
+}
+
+#[test]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
+fn a_run_whose_folder_is_removed_or_moved_makes_nothing_anew() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("removed");
+    let running = paused(&run);
+    fs::remove_dir_all(&run).unwrap();
+    let ended = running.end().with_code(1);
+    assert!(
+        ended
+            .stderr
+            .contains("it was removed; nothing more is written, and no checkpoint of it is left"),
+        "{ended:#?}"
+    );
+    assert!(!run.exists());
+
+    let [run, there] = ["moved", "there"].map(|name| place.path().join(name));
+    let running = paused(&run);
+    fs::rename(&run, &there).unwrap();
+    let ended = running.end().with_code(1);
+    for text in [
+        format!("it was moved to {}", there.display()),
+        format!("{}/checkpoints/step-00000020", there.display()),
+    ] {
+        assert!(ended.stderr.contains(&text), "{ended:#?}");
+    }
+    assert!(!run.exists() && !there.join("lock").exists());
+    assert_eq!(status(&there).0, "failed");
+    // It goes on there as if nothing had been.
+    restart(&there, &[]).with_code(0);
+    let reference = place.path().join("reference");
+    end(coarse_run(1, &reference).args(["--set", "output.checkpoint_every_steps=10"])).with_code(0);
+    assert_same(&there, &reference);
+}
+
+#[test]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
+fn a_second_run_in_a_folder_whose_lock_was_removed_stops_the_first() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let more = ["--force", "--set", "run.end_time=0.1us"];
+    for all in [true, false] {
+        let first = paused(&run);
+        if all {
+            fs::remove_dir_all(&run).unwrap();
+        } else {
+            fs::remove_file(run.join("lock")).unwrap();
+        }
+        let second = start(coarse_run(1, &run).args(more));
+        let ended = first.end().with_code(1);
+        let told = ["has taken it", "was removed; nothing more"];
+        assert!(
+            told.iter().any(|told| ended.stderr.contains(told)),
+            "{ended:#?}"
+        );
+        second.end().with_code(0);
+        let reference = place.path().join(format!("reference-{all}"));
+        end(coarse_run(1, &reference).args(more)).with_code(0);
+        assert_same(&run, &reference);
+        fs::remove_dir_all(&run).unwrap();
+    }
 }
 
 #[test]

@@ -15,7 +15,8 @@ use particles::{ParticleStore, SCRATCH_WORDS};
 /// A run folder of 30 particles with all that a run writes, after `change` of the particles.
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {
     let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
-    let folder = RunFolder::create(&comm, &place.join(name), &case.resolved, true).unwrap();
+    let folder = RunFolder::at(&place.join(name));
+    folder.create(&comm, &case.resolved, true).unwrap();
     let mut particles = particles(&comm, 30);
     for k in 0..30 {
         particles.body[k] = u32::try_from(k % 2).unwrap();

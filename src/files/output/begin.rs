@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use comm::Comm;
 
@@ -36,17 +37,18 @@ const CHANGED: [&str; 16] = [
 impl RunFolder {
     /// Takes the folder of a new run, and makes it if need be; nothing in it changes. A folder with
     /// something in it is refused, unless `force` is given and it holds a run. One that a run has
-    /// open is refused unless `ignore` is given. The lock is rank 0's. Collective.
+    /// open is refused unless `ignore` is given. Rank 0 holds it for as long as `self` or a copy lives, and
+    /// receives the warnings. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Held`],
     /// [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
     pub fn take_new(
-        &self,
+        &mut self,
         comm: &Comm,
         force: bool,
         ignore: bool,
-    ) -> Result<Option<RunLock>, OutputError> {
+    ) -> Result<Vec<String>, OutputError> {
         let mut lock = None;
         on_root(comm, || {
             let path = &self.path;
@@ -59,49 +61,49 @@ impl RunFolder {
             // Another run may have begun and ended here before the lock was taken.
             self.refuse(force)
         })?;
-        Ok(lock)
+        Ok(self.hold(lock))
     }
 
-    /// Takes the folder of a run to continue it; nothing in it changes. The lock is rank 0's.
-    /// Collective.
+    /// Takes the folder of a run to continue it; nothing in it changes. Rank 0 holds it for as long as
+    /// `self` or a copy lives, and receives the warnings. Collective.
     ///
     /// # Errors
     /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
     /// every rank.
-    pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
+    pub fn take(&mut self, comm: &Comm, ignore: bool) -> Result<Vec<String>, OutputError> {
         let mut lock = None;
         on_root(comm, || {
             lock = Some(RunLock::take(&self.path, ignore)?);
             Ok(())
         })?;
-        Ok(lock)
+        Ok(self.hold(lock))
     }
 
-    /// Makes the folder of a new run, with its resolved input. A folder with something in it is
+    fn hold(&mut self, lock: Option<RunLock>) -> Vec<String> {
+        self.lock = lock.map(Arc::new);
+        let lock = self.lock.iter();
+        lock.flat_map(|lock| lock.warnings.clone()).collect()
+    }
+
+    /// Begins a new run in its folder, with its resolved input. A folder with something in it is
     /// refused, unless `force` is given and it holds a run: then that run's files go, and
     /// nothing else. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
     /// every rank.
-    pub fn create(
-        comm: &Comm,
-        path: &Path,
-        resolved: &str,
-        force: bool,
-    ) -> Result<Self, OutputError> {
-        let folder = Self::at(path);
-        on_root(comm, || {
-            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
-            folder.refuse(force)?;
-            folder.clear()?;
+    pub fn create(&self, comm: &Comm, resolved: &str, force: bool) -> Result<(), OutputError> {
+        let path = &self.path;
+        self.on_root(comm, || {
+            files::make_folder(path)?;
+            self.refuse(force)?;
+            self.clear()?;
             // The status first, by which the folder is a run that --force clears.
-            folder.begin(0, 0.0, Some(resolved))?;
-            folder.make_folders()?;
+            self.begin(0, 0.0, Some(resolved))?;
+            self.make_folders()?;
             files::sync_folder(path)?;
             files::sync_folder(path.parent().unwrap_or(path))
-        })?;
-        Ok(folder)
+        })
     }
 
     /// Continues in the folder of an earlier run from a checkpoint of it, with a resolved input
@@ -122,7 +124,7 @@ impl RunFolder {
         passed_over: &[PathBuf],
     ) -> Result<Option<SetAside>, OutputError> {
         let mut aside = None;
-        on_root(comm, || {
+        self.on_root(comm, || {
             self.make_folders()?;
             let mut files = SetAside::new(&self.path)?;
             let moved = self
@@ -210,7 +212,7 @@ impl RunFolder {
 
     fn make_folders(&self) -> Result<(), OutputError> {
         for path in [self.snapshots(), self.checkpoints()] {
-            fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
+            files::make_folder(&path)?;
         }
         Ok(())
     }

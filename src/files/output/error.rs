@@ -119,6 +119,23 @@ pub enum OutputError {
         /// The holder.
         who: String,
     },
+    /// The folder is no longer this run's.
+    #[error(
+        "the run no longer has its folder {}: {what}; nothing more is written, {}",
+        path.display(),
+        newest.as_ref().map_or_else(
+            || "and no checkpoint of it is left".to_owned(),
+            |newest| format!("the newest whole checkpoint is {}", newest.display())
+        )
+    )]
+    Lost {
+        /// The folder as it was taken.
+        path: PathBuf,
+        /// What became of it.
+        what: String,
+        /// The newest whole checkpoint.
+        newest: Option<PathBuf>,
+    },
     /// A run on another host has not closed the folder.
     #[error(
         "the folder {} was not closed by {who}, and whether that still runs cannot be told from \

@@ -38,6 +38,7 @@ use std::sync::OnceLock;
 
 pub use block::Block;
 pub use error::OutputError;
+pub(crate) use files::make_folder;
 pub use files::{read_regular, read_small, write_atomically, write_json};
 pub use history::{Column, Table, Value, unit_of_model};
 pub use lock::{Holder, Presence, RunLock};

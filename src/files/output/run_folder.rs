@@ -2,12 +2,16 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
+
+use comm::Comm;
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::fragments::FragmentTable;
-use super::{OutputError, Status, files, write_atomically};
+use super::lock::{LOCK, RunLock};
+use super::{OutputError, Status, files, on_root, write_atomically};
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
@@ -20,9 +24,11 @@ pub(super) const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
 /// The folder of a run and the names of its files.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct RunFolder {
     pub(super) path: PathBuf,
+    /// On rank 0 of a run that holds it.
+    pub(super) lock: Option<Arc<RunLock>>,
 }
 
 impl RunFolder {
@@ -31,7 +37,53 @@ impl RunFolder {
     pub fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
+            lock: None,
         }
+    }
+
+    /// The folder that the run holds, where it is now. Rank 0's alone.
+    #[must_use]
+    pub fn place(&self) -> Option<Self> {
+        match &self.lock {
+            Some(lock) => lock.place().map(|path| Self::at(&path)),
+            None => Some(self.clone()),
+        }
+    }
+
+    /// Fails if the folder was removed or moved, or if another process has taken it: nothing is written
+    /// there then. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Lost`].
+    pub fn check(&self) -> Result<(), OutputError> {
+        let place = self.place();
+        let what = match &place {
+            Some(place) if place.path == self.path => return Ok(()),
+            Some(place) => format!("it was moved to {}", place.path.display()),
+            None => match self.lock.as_ref().and_then(|lock| lock.successor()) {
+                Some(who) => format!("{who} has taken it"),
+                None if self.path.exists() => format!("its file `{LOCK}` was removed"),
+                None => "it was removed".to_owned(),
+            },
+        };
+        let newest = place.as_ref().unwrap_or(self).checkpoint_folders();
+        Err(OutputError::Lost {
+            path: self.path.clone(),
+            what,
+            newest: newest.ok().and_then(|all| all.into_iter().next()),
+        })
+    }
+
+    /// [`on_root`], if the folder is still the run's. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Lost`], or the error of `task`; with the same text on every rank.
+    pub fn on_root(
+        &self,
+        comm: &Comm,
+        task: impl FnOnce() -> Result<(), OutputError>,
+    ) -> Result<(), OutputError> {
+        on_root(comm, || self.check().and_then(|()| task()))
     }
 
     /// Removes a file `stop` that asked an earlier run to stop: one from before `began`. One that
@@ -138,7 +190,7 @@ impl RunFolder {
     /// [`OutputError::Io`], [`OutputError::Hdf5`].
     pub fn write_fragments(&self, step: u64, table: &FragmentTable) -> Result<(), OutputError> {
         let folder = self.fragment_tables();
-        fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))?;
+        files::make_folder(&folder)?;
         table.write_hdf5(&self.fragment_hdf5(step))?;
         files::write_atomically(&self.fragment_table(step), &table.text())
     }

@@ -25,8 +25,7 @@ use super::watched::Watched;
 use super::{announce, census};
 use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, on_root, post_mortem,
-    write_json,
+    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, post_mortem, write_json,
 };
 use comm::Comm;
 use engine::step::failure::{check_gain, post_mortem as post_mortem_of, remove_failed};
@@ -86,7 +85,7 @@ impl<'a> Driver<'a> {
         simulation.timers = Timers::default();
         let plans = Plan::all(&simulation.case, &simulation.particles)?;
         let mut tables = None;
-        on_root(comm, || {
+        folder.on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
             tables = Some(Tables::open(folder, &simulation, resume)?);
             folder.forget_stop(launch.began)
@@ -147,7 +146,9 @@ impl<'a> Driver<'a> {
             Err(message) => {
                 self.progress.finish();
                 self.record(comm, &format!("failed: {message}"));
-                let _ = self.tables.as_mut().map(Tables::write_records);
+                if self.folder.check().is_ok() {
+                    let _ = self.tables.as_mut().map(Tables::write_records);
+                }
                 let state = &self.simulation.state;
                 fail(comm, self.folder, &message, state.step, state.time)
             }
@@ -205,14 +206,16 @@ impl<'a> Driver<'a> {
                 self.post_mortems += 1;
                 let simulation = &self.simulation;
                 let about = post_mortem_of(simulation, id, comm.rank());
-                let written = about.map_or(Ok(()), |about| {
-                    post_mortem::write(
+                let there = self.folder.on_root(comm, || Ok(()));
+                let written = there.and_then(|()| match about {
+                    None => Ok(()),
+                    Some(about) => post_mortem::write(
                         &stem,
                         &text,
                         &simulation.case,
                         &simulation.particles,
                         &about,
-                    )
+                    ),
                 });
                 text = match agree(comm, written) {
                     Ok(()) => format!("{text}; see {}.txt", stem.display()),
@@ -288,7 +291,7 @@ impl<'a> Driver<'a> {
             self.write_checkpoint(comm)?;
         }
         if snapshot_due || checkpoint_due {
-            on_root(comm, || self.write_running())?;
+            self.folder.on_root(comm, || self.write_running())?;
         }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.record(comm, &line);
@@ -310,7 +313,7 @@ impl<'a> Driver<'a> {
         if comm.is_root() {
             self.watched.row(&self.simulation.state, &load);
         }
-        on_root(comm, || match &mut self.tables {
+        self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
         })?;
@@ -337,7 +340,7 @@ impl<'a> Driver<'a> {
             };
             output = clock.output.line(clock.wall);
             let summary = summary(comm, &self.simulation, &clock);
-            on_root(comm, || {
+            folder.on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
                 self.write_status(phase, Some((reason, code)))
             })

@@ -107,7 +107,12 @@ pub fn give_up(comm: &Comm, message: &str) -> u8 {
 /// folder; returns the exit code.
 pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
-        say::warn(&format!("error: {message}"));
+        let lost = folder.check().err().map(|lost| lost.to_string());
+        say::warn(&format!("error: {}", lost.as_deref().unwrap_or(message)));
+    }
+    if comm.is_root()
+        && let Some(folder) = folder.place()
+    {
         // The message above is what counts; the folder may be what failed.
         let outlook = folder.status().ok().and_then(|status| status.outlook);
         let _ = folder.write_status(&Status {

@@ -71,7 +71,7 @@ pub fn go_on(
         let resolved = resolved_case.renew.then_some(&resolved[..]);
         folder.resume(comm, resolved, step, time, &origin.passed_over)
     } else {
-        RunFolder::create(comm, folder.path(), &resolved, force).map(|_| None)
+        folder.create(comm, &resolved, force).map(|()| None)
     };
     let aside = match begun {
         Ok(aside) => aside,
@@ -81,7 +81,7 @@ pub fn go_on(
     match Driver::begin(launch, args, simulation, folder, checkpoint, &warnings) {
         Ok(driver) => driver.run(comm),
         Err(error) => {
-            if let Some(aside) = aside {
+            if let Some(aside) = aside.filter(|_| folder.check().is_ok()) {
                 aside.undo();
             }
             give_up(comm, &error.to_string())

@@ -12,9 +12,11 @@ fn a_used_folder_is_refused_and_force_clears_only_a_run() {
     let comm = Comm::solo();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("deep/run");
-    let run = RunFolder::create(&comm, &path, "title = 1", false).unwrap();
+    let mut run = RunFolder::at(&path);
+    run.take_new(&comm, false, false).unwrap();
+    run.create(&comm, "title = 1", false).unwrap();
     assert_eq!(run.status().unwrap().state, Phase::Running);
-    let refused = RunFolder::create(&comm, &path, "", false).unwrap_err();
+    let refused = run.create(&comm, "", false).unwrap_err();
     let in_use = matches!(refused, OutputError::FolderInUse { .. });
     assert!(in_use && refused.to_string().contains("--force"));
 
@@ -28,7 +30,7 @@ fn a_used_folder_is_refused_and_force_clears_only_a_run() {
     write(run.snapshot_of(Some("far"), 3));
     write(run.snapshots_of(Some("far")).join("my picture.png"));
     write(path.join("notes.txt"));
-    RunFolder::create(&comm, &path, "title = 2", true).unwrap();
+    run.create(&comm, "title = 2", true).unwrap();
     let mut left = names_in(&run.snapshots()).unwrap();
     left.sort();
     let far = run.snapshots_of(Some("far"));
@@ -44,7 +46,9 @@ fn force_leaves_a_folder_alone_that_holds_no_run() {
     let folder = tempfile::tempdir().unwrap();
     let case = folder.path().join("case.toml");
     write(case.clone());
-    let refused = RunFolder::create(&Comm::solo(), folder.path(), "", true).unwrap_err();
+    let refused = RunFolder::at(folder.path())
+        .create(&Comm::solo(), "", true)
+        .unwrap_err();
     assert!(matches!(refused, OutputError::NotARun { .. }));
     assert_eq!(fs::read_to_string(case).unwrap(), "x");
 }
@@ -53,7 +57,8 @@ fn force_leaves_a_folder_alone_that_holds_no_run() {
 fn a_restart_sets_aside_what_came_after_its_checkpoint() {
     let comm = Comm::solo();
     let folder = tempfile::tempdir().unwrap();
-    let run = RunFolder::create(&comm, folder.path(), "", false).unwrap();
+    let run = RunFolder::at(folder.path());
+    run.create(&comm, "", false).unwrap();
     for step in [2, 4, 6] {
         write(run.snapshot(step));
         let time = f64::from(u32::try_from(step).unwrap());

@@ -1,6 +1,5 @@
 //! Writing a checkpoint.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::folder::{folder_name, prune, replace};
@@ -43,7 +42,7 @@ pub fn write(
     let temporary = files::partial(&path);
     on_root(comm, || {
         files::remove(&temporary)?;
-        fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
+        files::make_folder(&temporary)
     })?;
     let written = write_files(comm, &temporary, particles, meta, rows);
     publish_or_remove(comm, written, &temporary, || {

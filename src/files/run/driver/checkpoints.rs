@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::Driver;
-use crate::output::{OutputError, checkpoint, on_root};
+use crate::output::{OutputError, checkpoint};
 use crate::run::tables::Tables;
 use comm::Comm;
 use engine::step::measurements;
@@ -14,7 +14,8 @@ impl Driver<'_> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
+        self.folder
+            .on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
         let folder = self.folder.checkpoints();
         measurements::join_extremes(&mut self.simulation, comm);
         let rows = &mut self.rows;
@@ -30,7 +31,8 @@ impl Driver<'_> {
             let keep = simulation.case.output.checkpoints_kept;
             checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
         })?;
-        on_root(comm, || self.folder.forget_set_aside())?;
+        self.folder
+            .on_root(comm, || self.folder.forget_set_aside())?;
         let took = begun.elapsed();
         self.output_time.checkpoints += took;
         let next = self.watch.wrote_checkpoint(took);

@@ -1,10 +1,9 @@
 //! The snapshots of a run: the default ones, and those of schedules of their own.
 
-use std::fs;
 use std::time::Instant;
 
 use super::Driver;
-use crate::output::{OutputError, RunFolder, on_root, series, snapshot};
+use crate::output::{OutputError, RunFolder, make_folder, series, snapshot};
 use comm::Comm;
 
 impl Driver<'_> {
@@ -47,9 +46,9 @@ impl Driver<'_> {
         let (plan, rows) = (&self.plans[plan], &mut self.rows);
         let name = plan.name.as_deref();
         let path = self.folder.snapshot_of(name, self.simulation.state.step);
-        on_root(comm, || {
+        self.folder.on_root(comm, || {
             let folder = self.folder.snapshots_of(name);
-            fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))
+            make_folder(&folder)
         })?;
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
@@ -64,7 +63,7 @@ impl Driver<'_> {
             snapshot::write(comm, &path, &simulation.particles, &meta, &format, rows)
         })?;
         let state = &self.simulation.state;
-        on_root(comm, || {
+        self.folder.on_root(comm, || {
             let file = RunFolder::snapshot_name(state.step);
             series::add(&self.folder.series_of(name), &file, state.time)
         })?;
