@@ -25,6 +25,7 @@ pub fn prepare(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<(), Stri
     let simulation = stepped(comm, bench)?;
     let state = &simulation.state;
     let meta = checkpoint::Meta {
+        run: None,
         step: state.step,
         time: state.time,
         state: &serde_json::to_string(state).map_err(|e| e.to_string())?,

@@ -68,7 +68,7 @@ pub fn run(args: &RunArgs) -> u8 {
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
         let mut folder = RunFolder::at(&out);
         match folder.take_new(comm, args.force, args.common.ignore_lock) {
-            Ok(more) => start(launch, &args.common, case, &folder, args.force, more),
+            Ok(more) => start(launch, &args.common, case, folder, args.force, more),
             Err(error) => warn(comm, &format!("error: {error}")),
         }
     })

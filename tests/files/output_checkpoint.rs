@@ -12,6 +12,7 @@ use particles::{FieldKind, Life, ParticleStore, rows};
 fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
     let (comm, case) = (Comm::solo(), case());
     let meta = checkpoint::Meta {
+        run: None,
         step,
         time: 1e-9,
         state: "{}",

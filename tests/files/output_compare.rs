@@ -15,7 +15,7 @@ use particles::{ParticleStore, SCRATCH_WORDS};
 /// A run folder of 30 particles with all that a run writes, after `change` of the particles.
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {
     let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
-    let folder = RunFolder::at(&place.join(name));
+    let mut folder = RunFolder::at(&place.join(name));
     folder.create(&comm, &case.resolved, true).unwrap();
     let mut particles = particles(&comm, 30);
     for k in 0..30 {
@@ -35,6 +35,7 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
     .unwrap();
     series::add(&folder.series(), &RunFolder::snapshot_name(12), 3.5e-8).unwrap();
     let meta = checkpoint::Meta {
+        run: None,
         step: 12,
         time: 3.5e-8,
         state: r#"{"dt":1e-10}"#,

@@ -76,6 +76,7 @@ impl Bench {
         simulation.advance(&comm).unwrap();
         let (state, particles) = (&simulation.state, &simulation.particles);
         let meta = checkpoint::Meta {
+            run: None,
             step: state.step,
             time: state.time,
             state: &serde_json::to_string(state).unwrap(),
@@ -84,6 +85,7 @@ impl Bench {
         let mut rows = Rows::default();
         let sound = checkpoint::write(&comm, place.path(), particles, &meta, 1, &mut rows).unwrap();
         let meta = snapshot::Meta {
+            run: None,
             case: &simulation.case,
             step: state.step,
             time: state.time,

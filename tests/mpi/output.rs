@@ -199,6 +199,7 @@ fn state() -> String {
 fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result<(), OutputError> {
     let (particles, case, state) = (particles(comm, total), case(), state());
     let meta = checkpoint::Meta {
+        run: None,
         step,
         time: f64::MIN_POSITIVE / 4.0,
         state: &state,
@@ -313,6 +314,7 @@ fn few_writers_and_aligned_arrays_write_the_same_rows() {
                 );
                 let state = state();
                 let meta = checkpoint::Meta {
+                    run: None,
                     step: total,
                     time: f64::MIN_POSITIVE / 4.0,
                     state: &state,

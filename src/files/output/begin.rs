@@ -6,13 +6,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use comm::Comm;
+use uuid::Uuid;
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::lock::{LOCK, RunLock};
 use super::run_folder::{FILES, FRAGMENTS_ENDING, HDF5_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
 use super::set_aside::{self, SET_ASIDE, SetAside};
-use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
+use super::{
+    OutputError, Phase, RunFolder, Status, files, from_root, on_root, series, write_atomically,
+};
 
 /// Files that a restart changes before it has a checkpoint.
 const CHANGED: [&str; 16] = [
@@ -92,7 +95,8 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
     /// every rank.
-    pub fn create(&self, comm: &Comm, resolved: &str, force: bool) -> Result<(), OutputError> {
+    pub fn create(&mut self, comm: &Comm, resolved: &str, force: bool) -> Result<(), OutputError> {
+        self.id = Some(from_root(comm, || Ok(Uuid::new_v4()))?);
         let path = &self.path;
         self.on_root(comm, || {
             files::make_folder(path)?;
@@ -116,13 +120,18 @@ impl RunFolder {
     /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank. The folder is then as
     /// it was.
     pub fn resume(
-        &self,
+        &mut self,
         comm: &Comm,
         resolved: Option<&str>,
         step: u64,
         time: f64,
         passed_over: &[PathBuf],
     ) -> Result<Option<SetAside>, OutputError> {
+        let known = || self.status().ok().and_then(|status| status.run);
+        self.id = Some(from_root(
+            comm,
+            || Ok(known().unwrap_or_else(Uuid::new_v4)),
+        )?);
         let mut aside = None;
         self.on_root(comm, || {
             self.make_folders()?;
@@ -205,8 +214,11 @@ impl RunFolder {
             outlook: before.and_then(|status| status.outlook),
             ..Status::new(Phase::Running, step, time)
         })?;
+        let run = self
+            .id
+            .map_or(String::new(), |run| format!("# run {run}\n"));
         resolved.map_or(Ok(()), |text| {
-            write_atomically(&self.case(), text.as_bytes())
+            write_atomically(&self.case(), format!("{run}{text}").as_bytes())
         })
     }
 

@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use uuid::Uuid;
+
 /// An error of writing or reading back.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -135,6 +137,22 @@ pub enum OutputError {
         what: String,
         /// The newest whole checkpoint.
         newest: Option<PathBuf>,
+    },
+    /// A file of another run than the folder's.
+    #[error(
+        "{} is of the run {run}, and {} holds the run {own}: two runs have written there; move away what is          not of the one you want",
+        path.display(),
+        folder.display()
+    )]
+    OtherRun {
+        /// The file or checkpoint.
+        path: PathBuf,
+        /// Its run.
+        run: Uuid,
+        /// The run's folder.
+        folder: PathBuf,
+        /// Its run.
+        own: Uuid,
     },
     /// A run on another host has not closed the folder.
     #[error(

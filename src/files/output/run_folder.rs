@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use comm::Comm;
+use uuid::Uuid;
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
@@ -27,6 +28,8 @@ pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 #[derive(Debug, Clone)]
 pub struct RunFolder {
     pub(super) path: PathBuf,
+    /// The id of the run, once it has begun there.
+    pub(super) id: Option<Uuid>,
     /// On rank 0 of a run that holds it.
     pub(super) lock: Option<Arc<RunLock>>,
 }
@@ -37,15 +40,25 @@ impl RunFolder {
     pub fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
+            id: None,
             lock: None,
         }
+    }
+
+    /// The id of the run, once it has begun in the folder: results of several runs are told by it.
+    #[must_use]
+    pub fn id(&self) -> Option<Uuid> {
+        self.id
     }
 
     /// The folder that the run holds, where it is now. Rank 0's alone.
     #[must_use]
     pub fn place(&self) -> Option<Self> {
         match &self.lock {
-            Some(lock) => lock.place().map(|path| Self::at(&path)),
+            Some(lock) => lock.place().map(|path| Self {
+                path,
+                ..self.clone()
+            }),
             None => Some(self.clone()),
         }
     }
@@ -66,11 +79,12 @@ impl RunFolder {
                 None => "it was removed".to_owned(),
             },
         };
-        let newest = place.as_ref().unwrap_or(self).checkpoint_folders();
+        let left = place.as_ref().unwrap_or(self).checkpoint_folders();
+        let is_own = |path: &PathBuf| checkpoint::run_of(path) == self.id;
         Err(OutputError::Lost {
             path: self.path.clone(),
             what,
-            newest: newest.ok().and_then(|all| all.into_iter().next()),
+            newest: left.unwrap_or_default().into_iter().find(is_own),
         })
     }
 
@@ -114,6 +128,33 @@ impl RunFolder {
         Self::is_run(path).then(|| Self::at(path))
     }
 
+    /// The run that a snapshot belongs to, if it is in the folder of one.
+    pub(super) fn of_snapshot(path: &Path) -> Option<Self> {
+        let path = path.canonicalize().ok()?;
+        let snapshots = path.ancestors().skip(1).take(2);
+        let run = snapshots
+            .filter(|path| path.ends_with(SNAPSHOTS))
+            .find_map(Path::parent)?;
+        Self::is_run(run).then(|| Self::at(run))
+    }
+
+    /// Fails if the folder holds another run than that of a file in it.
+    ///
+    /// # Errors
+    /// [`OutputError::OtherRun`].
+    pub(super) fn refuse_other(&self, file: &Path, run: Option<Uuid>) -> Result<(), OutputError> {
+        let own = self.status().ok().and_then(|status| status.run);
+        match (own, run) {
+            (Some(own), Some(run)) if own != run => Err(OutputError::OtherRun {
+                path: file.to_owned(),
+                run,
+                folder: self.path.clone(),
+                own,
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// The checkpoints, newest first.
     ///
     /// # Errors
@@ -144,6 +185,11 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn write_status(&self, status: &Status) -> Result<(), OutputError> {
+        let run = self.id;
+        let status = Status {
+            run,
+            ..status.clone()
+        };
         write_atomically(&self.status_file(), &status.text())
     }
 

@@ -48,12 +48,12 @@ pub fn go_on(
     args: &CommonArgs,
     resolved_case: ResolvedCase,
     state: RunState,
-    origin: Origin,
+    mut origin: Origin,
     force: bool,
     mut warnings: Vec<String>,
 ) -> u8 {
     let comm = launch.comm;
-    let folder = &origin.folder;
+    let folder = &mut origin.folder;
     let (step, time) = (state.step, state.time);
     if state.last_reason == Reason::End {
         warnings.push(format!(
@@ -73,6 +73,7 @@ pub fn go_on(
     } else {
         folder.create(comm, &resolved, force).map(|()| None)
     };
+    let folder = &origin.folder;
     let aside = match begun {
         Ok(aside) => aside,
         Err(error) => return give_up(comm, &error.to_string()),

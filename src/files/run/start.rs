@@ -14,7 +14,7 @@ pub fn start(
     launch: &Launch,
     args: &CommonArgs,
     case: Case,
-    folder: &RunFolder,
+    mut folder: RunFolder,
     force: bool,
     more: Vec<String>,
 ) -> u8 {
@@ -30,8 +30,8 @@ pub fn start(
     if let Err(error) = folder.create(comm, &resolved, force) {
         return give_up(comm, &error.to_string());
     }
-    match Driver::begin(launch, args, simulation, folder, None, &warnings) {
+    match Driver::begin(launch, args, simulation, &folder, None, &warnings) {
         Ok(driver) => driver.run(comm),
-        Err(error) => fail(comm, folder, &error.to_string(), 0, 0.0),
+        Err(error) => fail(comm, &folder, &error.to_string(), 0, 0.0),
     }
 }

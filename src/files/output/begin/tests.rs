@@ -38,7 +38,8 @@ fn a_used_folder_is_refused_and_force_clears_only_a_run() {
     assert_eq!(names_in(&far).unwrap(), [far.join("my picture.png")]);
     assert!(names_in(&run.checkpoints()).unwrap().is_empty());
     assert!(path.join("notes.txt").exists());
-    assert_eq!(fs::read_to_string(run.case()).unwrap(), "title = 2");
+    let case = fs::read_to_string(run.case()).unwrap();
+    assert_eq!(case, format!("# run {}\ntitle = 2", run.id().unwrap()));
 }
 
 #[test]
@@ -57,7 +58,7 @@ fn force_leaves_a_folder_alone_that_holds_no_run() {
 fn a_restart_sets_aside_what_came_after_its_checkpoint() {
     let comm = Comm::solo();
     let folder = tempfile::tempdir().unwrap();
-    let run = RunFolder::at(folder.path());
+    let mut run = RunFolder::at(folder.path());
     run.create(&comm, "", false).unwrap();
     for step in [2, 4, 6] {
         write(run.snapshot(step));
@@ -78,23 +79,24 @@ fn a_restart_sets_aside_what_came_after_its_checkpoint() {
         (run.snapshot_files().unwrap(), close, checkpoints)
     };
     let before = names(&run);
-    let resume = |passed_over: &[PathBuf]| {
+    let resume = |run: &mut RunFolder, passed_over: &[PathBuf]| {
         let aside = run.resume(&comm, Some("edited"), 4, 4.0, passed_over);
         aside.unwrap().unwrap()
     };
     // A restart that could not begin leaves the folder as it was.
-    let aside = resume(&[]);
+    let aside = resume(&mut run, &[]);
     fs::remove_file(run.history()).unwrap();
     aside.undo();
     assert_eq!(names(&run), before);
     assert_eq!(series::read(&run.series()).unwrap().len(), 3);
     assert_eq!(run.status().unwrap().step, 0);
-    assert_eq!(fs::read_to_string(run.case()).unwrap(), "");
+    let case = fs::read_to_string(run.case()).unwrap();
+    assert!(case.ends_with("\n") && case.lines().count() == 1);
     assert_eq!(fs::read_to_string(run.history()).unwrap(), "x");
     assert_eq!(run.set_aside_folder(), None);
 
     let damaged = run.checkpoints().join("step-00000006");
-    drop(resume(std::slice::from_ref(&damaged)));
+    drop(resume(&mut run, std::slice::from_ref(&damaged)));
     let [there] = &checkpoint::list_damaged(&run.checkpoints()).unwrap()[..] else {
         panic!()
     };
@@ -104,7 +106,7 @@ fn a_restart_sets_aside_what_came_after_its_checkpoint() {
     assert!(aside.join("history.csv").exists());
     // One more that makes no checkpoint overwrites nothing.
     write(run.snapshot(6));
-    drop(resume(&[]));
+    drop(resume(&mut run, &[]));
     let again = run.set_aside_folder().unwrap().join("2");
     assert!(aside.exists() && again.join("snapshots/step-00000006.vtkhdf").exists());
     run.forget_set_aside().unwrap();

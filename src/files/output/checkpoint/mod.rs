@@ -13,6 +13,7 @@ mod write;
 
 pub(super) use folder::{DAMAGED, discard, is_damaged, step_of};
 pub use folder::{list, list_broken, list_damaged};
+pub(super) use manifest::run_of;
 pub use manifest::{FORMAT, MANIFEST, Manifest, manifest};
 pub use read::{Restored, read};
 pub(super) use state_file::row_type;

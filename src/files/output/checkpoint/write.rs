@@ -11,10 +11,13 @@ use crate::output::{
 };
 use comm::Comm;
 use particles::{Life, ParticleStore};
+use uuid::Uuid;
 
 /// Metadata of a checkpoint.
 #[derive(Debug, Clone, Copy)]
 pub struct Meta<'a> {
+    /// Id of the run, if it is one in a folder.
+    pub run: Option<Uuid>,
     /// Step number.
     pub step: u64,
     /// Time (s).
@@ -89,6 +92,7 @@ fn write_files(
         format: FORMAT,
         version: VERSION.to_owned(),
         commit: commit().to_owned(),
+        run: meta.run,
         step: meta.step,
         time: meta.time,
         particles: rows.block().total,

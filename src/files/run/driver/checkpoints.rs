@@ -16,13 +16,14 @@ impl Driver<'_> {
         // Rows before this checkpoint are not written again once it is there.
         self.folder
             .on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
-        let folder = self.folder.checkpoints();
+        let (folder, run) = (self.folder.checkpoints(), self.folder.id());
         measurements::join_extremes(&mut self.simulation, comm);
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
             let state = &simulation.state;
             let text = serde_json::to_string(state).expect("plain numbers");
             let meta = checkpoint::Meta {
+                run,
                 step: state.step,
                 time: state.time,
                 state: &text,

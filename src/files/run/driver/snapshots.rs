@@ -52,6 +52,7 @@ impl Driver<'_> {
         })?;
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
+                run: self.folder.id(),
                 case: &simulation.case,
                 step: simulation.state.step,
                 time: simulation.state.time,
