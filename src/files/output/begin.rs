@@ -10,12 +10,16 @@ use uuid::Uuid;
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
+use super::listing::LISTING;
 use super::lock::{LOCK, RunLock};
-use super::run_folder::{FILES, FRAGMENTS_ENDING, HDF5_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
-use super::set_aside::{self, SET_ASIDE, SetAside};
+use super::run_folder::{SNAPSHOT_ENDING, STATUS};
+use super::set_aside::{SET_ASIDE, SetAside};
 use super::{
     OutputError, Phase, RunFolder, Status, files, from_root, on_root, series, write_atomically,
 };
+
+/// Most files of a user's that are named.
+const TOLD: usize = 5;
 
 /// Files that a restart changes before it has a checkpoint.
 const CHANGED: [&str; 16] = [
@@ -90,24 +94,43 @@ impl RunFolder {
 
     /// Begins a new run in its folder, with its resolved input. A folder with something in it is
     /// refused, unless `force` is given and it holds a run: then that run's files go, and
-    /// nothing else. Collective.
+    /// nothing else; tells on rank 0 what stays. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
     /// every rank.
-    pub fn create(&mut self, comm: &Comm, resolved: &str, force: bool) -> Result<(), OutputError> {
+    pub fn create(
+        &mut self,
+        comm: &Comm,
+        resolved: &str,
+        force: bool,
+    ) -> Result<Option<String>, OutputError> {
         self.id = Some(from_root(comm, || Ok(Uuid::new_v4()))?);
         let path = &self.path;
+        let mut kept = Vec::new();
         self.on_root(comm, || {
             files::make_folder(path)?;
             self.refuse(force)?;
-            self.clear()?;
-            // The status first, by which the folder is a run that --force clears.
+            kept = self.clear()?;
+            // List and status first, by which the folder is a run that --force clears.
+            self.begin_listing()?;
             self.begin(0, 0.0, Some(resolved))?;
             self.make_folders()?;
             files::sync_folder(path)?;
             files::sync_folder(path.parent().unwrap_or(path))
-        })
+        })?;
+        let names = kept.iter().filter_map(|kept| kept.strip_prefix(path).ok());
+        let names: Vec<_> = names.map(|name| name.display().to_string()).collect();
+        let (named, more) = names.split_at(names.len().min(TOLD));
+        let more = match more.len() {
+            0 => String::new(),
+            count => format!(" and {count} more"),
+        };
+        let text = format!(
+            "--force keeps what the run did not write: {}{more}",
+            named.join(", ")
+        );
+        Ok((!named.is_empty()).then_some(text))
     }
 
     /// Continues in the folder of an earlier run from a checkpoint of it, with a resolved input
@@ -134,6 +157,9 @@ impl RunFolder {
         )?);
         let mut aside = None;
         self.on_root(comm, || {
+            if !self.listing().exists() {
+                self.begin_listing()?;
+            }
             self.make_folders()?;
             let mut files = SetAside::new(&self.path)?;
             let moved = self
@@ -191,15 +217,6 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Removes the files that restarts have set aside, if any: the run has a checkpoint of its own.
-    /// Rank 0's alone.
-    ///
-    /// # Errors
-    /// [`OutputError::Io`].
-    pub fn forget_set_aside(&self) -> Result<(), OutputError> {
-        set_aside::forget(&self.path)
-    }
-
     /// The folder of files that restarts have set aside, if there is one.
     #[must_use]
     pub fn set_aside_folder(&self) -> Option<PathBuf> {
@@ -236,7 +253,7 @@ impl RunFolder {
             Ok(())
         } else if !force {
             Err(OutputError::FolderInUse { path })
-        } else if Self::is_run(&path) {
+        } else if Self::is_run(&path) && self.listing().is_file() {
             Ok(())
         } else {
             Err(OutputError::NotARun { path })
@@ -247,63 +264,12 @@ impl RunFolder {
     /// very beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
-        let unfinished = [LOCK, STATUS].map(|name| files::partial(Path::new(name)));
-        let is_nothing = |path: &PathBuf| {
-            path.ends_with(LOCK) || unfinished.iter().any(|name| path.ends_with(name))
-        };
+        let begun = [LOCK, LISTING].map(PathBuf::from);
+        let unfinished = [LOCK, LISTING, STATUS].map(|name| files::partial(Path::new(name)));
+        let nothing = begun.iter().chain(&unfinished);
+        let is_nothing = |path: &PathBuf| nothing.clone().any(|name| path.ends_with(name));
         Ok(names.iter().all(is_nothing))
     }
-
-    /// Removes the files of a run at once, as `--force` demands. Checkpoints go first, each in one
-    /// rename and the newest first, so that a restart after an interrupted clearing finds whole ones or
-    /// none. The status stays until a new one replaces it, so that the folder remains one that
-    /// `--force` clears.
-    fn clear(&self) -> Result<(), OutputError> {
-        for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
-            checkpoint::discard(path)?;
-        }
-        let mut folders = vec![
-            self.checkpoints(),
-            self.fragment_tables(),
-            self.gauge_records(),
-        ];
-        let schedules = self.all_schedules()?;
-        let schedules = schedules.iter().map(Option::as_deref);
-        folders.extend(schedules.clone().map(|name| self.snapshots_of(name)));
-        for folder in folders {
-            for path in names_in(&folder)? {
-                if is_ours(&path) {
-                    files::remove(&path)?;
-                }
-            }
-        }
-        for name in schedules.flatten() {
-            // With something of the user's in it, it stays.
-            let _ = fs::remove_dir(self.snapshots_of(Some(name)));
-        }
-        files::remove(&self.path.join(TROUBLE))?;
-        self.forget_set_aside()?;
-        for &name in FILES {
-            if name != STATUS {
-                files::remove(&self.path.join(name))?;
-            }
-            files::remove(&files::partial(&self.path.join(name)))?;
-        }
-        Ok(())
-    }
-}
-
-/// Returns true for names that a run writes into its folders of snapshots or checkpoints.
-fn is_ours(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.trim_end_matches(files::PARTIAL);
-    let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
-    step_of(name, SNAPSHOT_ENDING).is_some()
-        || step_of(name, FRAGMENTS_ENDING).is_some()
-        || step_of(name, HDF5_ENDING).is_some()
-        || step_of(name, "").is_some()
-        || checkpoint::is_damaged(name)
-        || name.extension().is_some_and(|e| e == "series")
 }
 
 #[cfg(test)]

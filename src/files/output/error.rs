@@ -40,8 +40,8 @@ pub enum OutputError {
     },
     /// `--force` on a folder that no run has made.
     #[error(
-        "the folder {} is not empty and holds no run (no status.json), so --force does not clear \
-         it; choose another with --out",
+        "the folder {} is not empty and holds no run that lists its files (status.json, files.txt), so \
+         --force does not clear it; choose another with --out",
         path.display()
     )]
     NotARun {

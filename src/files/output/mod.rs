@@ -15,6 +15,7 @@ pub mod fragments;
 pub mod gauge_records;
 pub mod h5;
 mod history;
+mod listing;
 mod lock;
 mod log;
 pub mod measures;

@@ -11,17 +11,18 @@ use uuid::Uuid;
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::fragments::FragmentTable;
+use super::listing::LISTING;
 use super::lock::{LOCK, RunLock};
 use super::{OutputError, Status, files, on_root, write_atomically};
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
-const CHECKPOINTS: &str = "checkpoints";
+pub(super) const CHECKPOINTS: &str = "checkpoints";
 const FRAGMENTS: &str = "fragments";
-pub(super) const FRAGMENTS_ENDING: &str = ".csv";
+const FRAGMENTS_ENDING: &str = ".csv";
 const GAUGES: &str = "gauges";
-pub(super) const HDF5_ENDING: &str = ".h5";
-pub(super) const TROUBLE: &str = "trouble";
+const HDF5_ENDING: &str = ".h5";
+const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
 /// The folder of a run and the names of its files.
@@ -236,6 +237,9 @@ impl RunFolder {
     /// [`OutputError::Io`], [`OutputError::Hdf5`].
     pub fn write_fragments(&self, step: u64, table: &FragmentTable) -> Result<(), OutputError> {
         let folder = self.fragment_tables();
+        for path in [self.fragment_hdf5(step), self.fragment_table(step)] {
+            self.list(&path)?;
+        }
         files::make_folder(&folder)?;
         table.write_hdf5(&self.fragment_hdf5(step))?;
         files::write_atomically(&self.fragment_table(step), &table.text())
@@ -299,16 +303,11 @@ macro_rules! paths {
             }
         )+ }
     };
-    (files $files:ident, $($(#[$doc:meta])+ $path:ident: $name:expr;)+) => {
-        paths! { $($(#[$doc])+ $path: $name;)+ }
-
-        /// The files that a run writes into its folder, beside two folders.
-        pub(super) const $files: &[&str] = &[$($name),+];
-    };
 }
 
 paths! {
-    files FILES,
+    /// The list of the files that the run has written.
+    listing: LISTING;
     /// The resolved input.
     case: "case.toml";
     /// Table of conserved sums.

@@ -206,7 +206,12 @@ impl<'a> Driver<'a> {
                 self.post_mortems += 1;
                 let simulation = &self.simulation;
                 let about = post_mortem_of(simulation, id, comm.rank());
-                let there = self.folder.on_root(comm, || Ok(()));
+                let there = self.folder.on_root(comm, || {
+                    let mut files = ["txt", "h5"]
+                        .map(|ending| stem.with_extension(ending))
+                        .into_iter();
+                    files.try_for_each(|path| self.folder.list(&path))
+                });
                 let written = there.and_then(|()| match about {
                     None => Ok(()),
                     Some(about) => post_mortem::write(

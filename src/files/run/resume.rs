@@ -71,7 +71,11 @@ pub fn go_on(
         let resolved = resolved_case.renew.then_some(&resolved[..]);
         folder.resume(comm, resolved, step, time, &origin.passed_over)
     } else {
-        folder.create(comm, &resolved, force).map(|()| None)
+        let created = folder.create(comm, &resolved, force);
+        created.map(|kept| {
+            warnings.extend(kept);
+            None
+        })
     };
     let folder = &origin.folder;
     let aside = match begun {

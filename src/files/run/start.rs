@@ -27,8 +27,9 @@ pub fn start(
         Ok(simulation) => simulation,
         Err(error) => return give_up(comm, &error.to_string()),
     };
-    if let Err(error) = folder.create(comm, &resolved, force) {
-        return give_up(comm, &error.to_string());
+    match folder.create(comm, &resolved, force) {
+        Ok(kept) => warnings.extend(kept),
+        Err(error) => return give_up(comm, &error.to_string()),
     }
     match Driver::begin(launch, args, simulation, &folder, None, &warnings) {
         Ok(driver) => driver.run(comm),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{folder_name, prune, replace};
+use super::folder::{folder_name, prune, remove_own, replace};
 use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
 use crate::output::h5::Writer;
@@ -44,7 +44,7 @@ pub fn write(
     let path = folder.join(folder_name(meta.step));
     let temporary = files::partial(&path);
     on_root(comm, || {
-        files::remove(&temporary)?;
+        remove_own(&temporary)?;
         files::make_folder(&temporary)
     })?;
     let written = write_files(comm, &temporary, particles, meta, rows);

@@ -14,8 +14,11 @@ impl Driver<'_> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
-        self.folder
-            .on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
+        let step = self.simulation.state.step;
+        self.folder.on_root(comm, || {
+            self.folder.list_checkpoint(step)?;
+            self.tables.as_mut().map_or(Ok(()), Tables::sync)
+        })?;
         let (folder, run) = (self.folder.checkpoints(), self.folder.id());
         measurements::join_extremes(&mut self.simulation, comm);
         let rows = &mut self.rows;

@@ -48,7 +48,9 @@ impl Driver<'_> {
         let path = self.folder.snapshot_of(name, self.simulation.state.step);
         self.folder.on_root(comm, || {
             let folder = self.folder.snapshots_of(name);
-            make_folder(&folder)
+            make_folder(&folder)?;
+            self.folder.list(&path)?;
+            self.folder.list(&self.folder.series_of(name))
         })?;
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
