@@ -45,6 +45,10 @@ pub struct RestartArgs {
     #[arg(long)]
     accept_case: bool,
 
+    /// Refuse to go on if results that the checkpoint stands on are lost or changed
+    #[arg(long)]
+    strict: bool,
+
     #[command(flatten)]
     common: CommonArgs,
 
@@ -257,6 +261,22 @@ fn resume(
         return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
+    if let Some(own) = own {
+        let losses = from_root(comm, || {
+            let manifest = checkpoint::manifest(&loaded.checkpoint)?;
+            Ok(own.losses(&manifest.results))
+        });
+        let losses = losses.map_err(|error| format!("error: {error}"))?;
+        if args.strict && !losses.is_empty() {
+            return Err(format!(
+                "error: {}: {}",
+                own.path().display(),
+                losses.join("; ")
+            ));
+        }
+        let told = |loss| format!("{}: {loss}", own.path().display());
+        warnings.extend(losses.into_iter().map(told));
+    }
     warnings.extend(more);
     warnings.extend(loaded.warnings());
     let passed = loaded

@@ -226,6 +226,68 @@ fn a_second_run_in_a_folder_whose_lock_was_removed_stops_the_first() {
 }
 
 #[test]
+fn results_that_a_restart_stands_on_and_that_are_lost_are_told() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    stopped(&run);
+    let whole = place.path().join("whole");
+    copy(&run, &whole);
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    let lines: Vec<&str> = history.lines().collect();
+    let middle = lines.len() / 2;
+    let cut = [&lines[..middle], &lines[middle + 1..], &[""]].concat();
+    fs::write(run.join("history.csv"), cut.join("\n")).unwrap();
+    fs::remove_file(run.join("contacts.csv")).unwrap();
+    fs::remove_file(run.join("snapshots/step-00000000.vtkhdf")).unwrap();
+    let rows = lines.len() - 2;
+    let told = [
+        &format!("history.csv has other rows than the {rows} that it had")[..],
+        "contacts.csv with ",
+        "snapshots/step-00000000.vtkhdf is missing",
+    ];
+    assert_refused(&run, &["--strict"], 2, &told);
+    let ended = restart(&run, &[]).with_code(0);
+    assert!(
+        told.iter().all(|text| ended.stderr.contains(text)),
+        "{ended:#?}"
+    );
+    let ended = restart(&whole, &["--strict"]).with_code(0);
+    assert_eq!(ended.stderr, "");
+}
+
+#[test]
+fn results_of_another_run_in_a_folder_are_refused_by_name() {
+    let place = tempfile::tempdir().unwrap();
+    let [run, other] = ["run", "other"].map(|name| place.path().join(name));
+    stopped(&run);
+    stopped(&other);
+    let [ours, theirs] = [&run, &other].map(|run| newest(run));
+    fs::remove_dir_all(&ours).unwrap();
+    copy(&theirs, &ours);
+    assert_refused(
+        &run,
+        &[],
+        2,
+        &["is of the run ", "two runs have written there"],
+    );
+
+    let first = "snapshots/step-00000000.vtkhdf";
+    fs::copy(other.join(first), run.join(first)).unwrap();
+    let picture = place.path().join("picture.png");
+    let mut plot = command(WHIPPLE);
+    let ended = end(plot
+        .arg("plot")
+        .arg(run.join(first))
+        .arg("--out")
+        .arg(&picture));
+    assert_ne!(ended.code, Some(0));
+    assert!(
+        ended.stderr.contains("step-00000000.vtkhdf is of the run "),
+        "{ended:#?}"
+    );
+}
+
+#[test]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_killed_run_is_told_from_one_that_runs() {
     let place = tempfile::tempdir().unwrap();

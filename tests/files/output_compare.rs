@@ -8,7 +8,7 @@ use app::compare::{Report, compare};
 use app::info::describe;
 use comm::Comm;
 use files::output::{
-    Column, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
+    Column, ResultExtents, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
 };
 use particles::{ParticleStore, SCRATCH_WORDS};
 
@@ -40,6 +40,7 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
         time: 3.5e-8,
         state: r#"{"dt":1e-10}"#,
         input: &case.resolved,
+        results: &ResultExtents::default(),
     };
     checkpoint::write(
         &comm,

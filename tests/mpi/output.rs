@@ -11,7 +11,7 @@ use comm::Comm;
 use files::output::h5::read::SnapshotFile;
 use files::output::h5::{Content, Element, RowType};
 use files::output::snapshot::{Portion, SnapshotFormat};
-use files::output::{Block, OutputError, Rows, checkpoint, snapshot};
+use files::output::{Block, OutputError, ResultExtents, Rows, checkpoint, snapshot};
 use model::{Precision, Sharing};
 use particles::{FIELDS, Life, ParticleStore, rows};
 
@@ -204,6 +204,7 @@ fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result
         time: f64::MIN_POSITIVE / 4.0,
         state: &state,
         input: &case.resolved,
+        results: &ResultExtents::default(),
     };
     let mut rows = Rows::default();
     checkpoint::write(comm, folder, &particles, &meta, 2, &mut rows).map(drop)
@@ -319,6 +320,7 @@ fn few_writers_and_aligned_arrays_write_the_same_rows() {
                     time: f64::MIN_POSITIVE / 4.0,
                     state: &state,
                     input: &case.resolved,
+                    results: &ResultExtents::default(),
                 };
                 let path = checkpoint::write(comm, folder, &particles, &meta, 9, &mut rows);
                 check_restored(comm, &path.unwrap(), total);

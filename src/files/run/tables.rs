@@ -10,7 +10,9 @@ use super::columns::{
 };
 use super::load::Load;
 use crate::output::gauge_records::{self, GaugeRecords};
-use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
+use crate::output::{
+    Column, OutputError, RunFolder, Table, TableExtent, Value, fragments, measures,
+};
 use engine::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use engine::step::{RunState, Simulation, measurements};
 use model::{Case, NumericalFailurePolicy, SphForm};
@@ -331,8 +333,8 @@ impl Tables {
             .map_or(Ok(()), GaugeRecords::write)
     }
 
-    /// Syncs all rows written so far to the disk.
-    pub fn sync(&mut self) -> Result<(), OutputError> {
+    /// Syncs all rows written so far to the disk, and tells what the tables hold.
+    pub fn sync(&mut self) -> Result<Vec<TableExtent>, OutputError> {
         self.write_records()?;
         let always = [
             &self.history,
@@ -349,10 +351,11 @@ impl Tables {
             &self.gauges,
         ];
         let witnesses = self.witnesses.iter().chain(&self.measures).flatten();
-        let mut all = always
+        let all = always
             .into_iter()
             .chain(some.into_iter().flatten())
             .chain(witnesses);
-        all.try_for_each(Table::sync)
+        all.map(|table| table.sync().map(|()| table.extent()))
+            .collect()
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-use crate::output::{OutputError, RunFolder, files};
+use crate::output::{OutputError, ResultExtents, RunFolder, files};
 
 /// Number of the format; a reader takes its own only.
 pub const FORMAT: u64 = 1;
@@ -40,6 +40,9 @@ pub struct Manifest {
     pub block: u64,
     /// SHA-256 of each block of the state file.
     pub sha256: Vec<String>,
+    /// The results of the run up to here.
+    #[serde(default)]
+    pub results: ResultExtents,
 }
 
 impl Manifest {

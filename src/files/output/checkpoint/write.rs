@@ -7,7 +7,8 @@ use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
 use crate::output::h5::Writer;
 use crate::output::{
-    OutputError, Rows, VERSION, commit, digest, files, on_root, publish_or_remove, write_json,
+    OutputError, ResultExtents, Rows, VERSION, commit, digest, files, on_root, publish_or_remove,
+    write_json,
 };
 use comm::Comm;
 use particles::{Life, ParticleStore};
@@ -26,6 +27,8 @@ pub struct Meta<'a> {
     pub state: &'a str,
     /// The resolved input.
     pub input: &'a str,
+    /// The results of the run up to here, on rank 0.
+    pub results: &'a ResultExtents,
 }
 
 /// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
@@ -100,6 +103,7 @@ fn write_files(
         size,
         block,
         sha256: digest::of_file(comm, &state, size, block)?,
+        results: meta.results.clone(),
     };
     on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
 }

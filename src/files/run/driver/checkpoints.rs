@@ -3,8 +3,7 @@
 use std::time::Instant;
 
 use super::Driver;
-use crate::output::{OutputError, checkpoint};
-use crate::run::tables::Tables;
+use crate::output::{OutputError, ResultExtents, checkpoint};
 use comm::Comm;
 use engine::step::measurements;
 
@@ -15,9 +14,14 @@ impl Driver<'_> {
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         let step = self.simulation.state.step;
+        let mut results = ResultExtents::default();
         self.folder.on_root(comm, || {
             self.folder.list_checkpoint(step)?;
-            self.tables.as_mut().map_or(Ok(()), Tables::sync)
+            if let Some(tables) = &mut self.tables {
+                results.tables = tables.sync()?;
+            }
+            results.files = self.folder.result_files()?;
+            Ok(())
         })?;
         let (folder, run) = (self.folder.checkpoints(), self.folder.id());
         measurements::join_extremes(&mut self.simulation, comm);
@@ -31,6 +35,7 @@ impl Driver<'_> {
                 time: state.time,
                 state: &text,
                 input: &simulation.case.resolved,
+                results: &results,
             };
             let keep = simulation.case.output.checkpoints_kept;
             checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
