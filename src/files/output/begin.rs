@@ -157,7 +157,7 @@ impl RunFolder {
         )?);
         let mut aside = None;
         self.on_root(comm, || {
-            if !self.listing().exists() {
+            if !self.has_listing() {
                 self.begin_listing()?;
             }
             self.make_folders()?;
@@ -253,7 +253,7 @@ impl RunFolder {
             Ok(())
         } else if !force {
             Err(OutputError::FolderInUse { path })
-        } else if Self::is_run(&path) && self.listing().is_file() {
+        } else if Self::is_run(&path) && self.has_listing() {
             Ok(())
         } else {
             Err(OutputError::NotARun { path })
@@ -264,10 +264,12 @@ impl RunFolder {
     /// very beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
-        let begun = [LOCK, LISTING].map(PathBuf::from);
         let unfinished = [LOCK, LISTING, STATUS].map(|name| files::partial(Path::new(name)));
-        let nothing = begun.iter().chain(&unfinished);
-        let is_nothing = |path: &PathBuf| nothing.clone().any(|name| path.ends_with(name));
+        let is_nothing = |path: &PathBuf| {
+            path.ends_with(LOCK)
+                || path.ends_with(LISTING) && self.has_listing()
+                || unfinished.iter().any(|name| path.ends_with(name))
+        };
         Ok(names.iter().all(is_nothing))
     }
 }

@@ -28,6 +28,12 @@ impl RunFolder {
         write_atomically(&self.listing(), text.as_bytes())
     }
 
+    /// Returns true if there is a list that a run has begun.
+    pub(super) fn has_listing(&self) -> bool {
+        let begin = format!("{LISTING}\n");
+        read_small(&self.listing()).is_ok_and(|text| text.starts_with(begin.as_bytes()))
+    }
+
     /// Lists a file that the run is about to make. Rank 0's alone.
     ///
     /// # Errors
@@ -124,11 +130,10 @@ impl RunFolder {
 
     /// The names in the list; none if there is no list.
     fn listed(&self) -> Result<HashSet<PathBuf>, OutputError> {
-        let listing = self.listing();
-        if !listing.exists() {
+        if !self.has_listing() {
             return Ok(HashSet::new());
         }
-        let text = read_small(&listing)?;
+        let text = read_small(&self.listing())?;
         Ok(String::from_utf8_lossy(&text)
             .lines()
             .map(PathBuf::from)
