@@ -9,7 +9,7 @@ use files::input;
 use files::output::checkpoint::{self, MANIFEST, Restored};
 use files::output::{OutputError, Phase, RunFolder, from_root, snapshot};
 use files::run::CommonArgs;
-use files::run::launch::{Launch, warn, with_ranks};
+use files::run::launch::{Launch, same_options, warn, with_ranks};
 use files::run::resume::{Origin, go_on, nothing_to_do, state_of};
 use files::run::saved_case;
 use files::run::say::say;
@@ -62,6 +62,9 @@ pub fn run(args: &RestartArgs) -> u8 {
     args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
+        if let Err(error) = same_options(comm, args) {
+            return warn(comm, &format!("error: {error}"));
+        }
         if let Err(error) = input::output_and_run_only(&args.set) {
             return warn(comm, &error.to_string());
         }

@@ -6,7 +6,7 @@ use comm::Comm;
 use files::input;
 use files::output::{RunFolder, snapshot};
 use files::run::CommonArgs;
-use files::run::launch::{warn, with_ranks};
+use files::run::launch::{same_case, same_options, warn, with_ranks};
 use files::run::start::start;
 
 /// Run a case from its start
@@ -51,11 +51,15 @@ pub fn run(args: &RunArgs) -> u8 {
     args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
+        if let Err(error) = same_options(comm, args) {
+            return warn(comm, &format!("error: {error}"));
+        }
         let (path, text) = match read_case(comm, &args.case) {
             Ok(read) => read,
             Err(message) => return warn(comm, &message),
         };
-        let case = match input::parse(&path.display().to_string(), &text, &args.set) {
+        let read = input::parse(&path.display().to_string(), &text, &args.set);
+        let case = match same_case(comm, read) {
             Ok(case) => case,
             Err(error) => return warn(comm, &error.to_string()),
         };

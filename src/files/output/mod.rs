@@ -56,7 +56,7 @@ pub use sheet::Sheet;
 pub use sheet::line as table_line;
 pub use status::{Energies, Outlook, Phase, Status};
 use vote::publish_or_remove;
-pub use vote::{agree, from_root, on_root};
+pub use vote::{agree, from_root, on_root, same_on_all};
 
 /// The program's version.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
