@@ -264,12 +264,14 @@ fn resume(
         return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
+    let mut stop = None;
     if let Some(own) = own {
-        let losses = from_root(comm, || {
-            let manifest = checkpoint::manifest(&loaded.checkpoint)?;
-            Ok(own.losses(&manifest.results))
+        let known = from_root(comm, || {
+            let results = checkpoint::manifest(&loaded.checkpoint)?.results;
+            Ok((own.losses(&results), results.stop))
         });
-        let losses = losses.map_err(|error| format!("error: {error}"))?;
+        let losses;
+        (losses, stop) = known.map_err(|error| format!("error: {error}"))?;
         if args.strict && !losses.is_empty() {
             return Err(format!(
                 "error: {}: {}",
@@ -288,6 +290,7 @@ fn resume(
         .map(|passed| (&passed.path).into());
     let origin = Origin {
         passed_over: passed.collect(),
+        stop,
         checkpoint: loaded.checkpoint,
         particles: loaded.particles,
         folder: loaded.named.folder,

@@ -136,7 +136,7 @@ impl RunFolder {
     /// Continues in the folder of an earlier run from a checkpoint of it, with a resolved input
     /// unless the one there stays. Checkpoints that were passed over as damaged get another name.
     /// Later files of the run are set aside until [`Self::forget_set_aside`], since the new
-    /// run writes them again; copies of the tables go there too, which [`super::Table::resume`] cuts.
+    /// run writes them again, and with them the snapshot that a `stop` wrote at this step; copies of the tables go there too, which [`super::Table::resume`] cuts.
     /// Collective.
     ///
     /// # Errors
@@ -148,6 +148,7 @@ impl RunFolder {
         resolved: Option<&str>,
         step: u64,
         time: f64,
+        stop: Option<u64>,
         passed_over: &[PathBuf],
     ) -> Result<Option<SetAside>, OutputError> {
         let known = || self.status().ok().and_then(|status| status.run);
@@ -163,7 +164,7 @@ impl RunFolder {
             self.make_folders()?;
             let mut files = SetAside::new(&self.path)?;
             let moved = self
-                .set_aside(&mut files, step, time, passed_over)
+                .set_aside(&mut files, step, time, stop, passed_over)
                 .and_then(|()| self.begin(step, time, resolved));
             if let Err(error) = moved {
                 files.undo();
@@ -182,6 +183,7 @@ impl RunFolder {
         aside: &mut SetAside,
         step: u64,
         time: f64,
+        stop: Option<u64>,
         passed_over: &[PathBuf],
     ) -> Result<(), OutputError> {
         for path in passed_over {
@@ -198,9 +200,15 @@ impl RunFolder {
         for schedule in self.all_schedules()? {
             let series = self.series_of(schedule.as_deref());
             aside.copy(&series)?;
-            series::keep_until(&series, time)?;
+            let stop = stop.filter(|_| schedule.is_none());
+            let stop_name = stop.map(Self::snapshot_name);
+            series::keep(&series, |entry| {
+                entry.time <= time && stop_name.as_ref() != Some(&entry.name)
+            })?;
             for path in self.snapshot_files_of(schedule.as_deref())? {
-                if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
+                if step_of(&path, SNAPSHOT_ENDING)
+                    .is_some_and(|other| other > step || stop == Some(other))
+                {
                     aside.take(&path)?;
                 }
             }

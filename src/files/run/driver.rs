@@ -52,6 +52,8 @@ pub struct Driver<'a> {
     output_time: OutputTime,
     /// Post-mortems written.
     post_mortems: usize,
+    /// Step of the last default snapshot.
+    shown: Option<u64>,
 }
 
 /// Most post-mortems of a process: where particles are removed, the first ones are the most useful.
@@ -108,6 +110,7 @@ impl<'a> Driver<'a> {
             notices: Notices::default(),
             output_time: OutputTime::default(),
             post_mortems: 0,
+            shown: None,
         };
         let every = driver.simulation.case.output.checkpoint_every_wall;
         if comm.is_root() {
@@ -293,7 +296,7 @@ impl<'a> Driver<'a> {
         // A stop writes its own.
         let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
         if checkpoint_due && !finished && !stops {
-            self.write_checkpoint(comm)?;
+            self.write_checkpoint(comm, None)?;
         }
         if snapshot_due || checkpoint_due {
             self.folder.on_root(comm, || self.write_running())?;
@@ -330,13 +333,20 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Writes the last checkpoint, `summary.json` and `status.json`; returns the exit code.
+    /// Writes the last checkpoint, the snapshot of a stop, `summary.json` and `status.json`; returns the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
         let begun = Instant::now();
         let mut output = String::new();
-        let closed = self.write_checkpoint(comm).and_then(|()| {
+        // A stopped run shows where it is.
+        let step = self.simulation.state.step;
+        let stop = (phase == Phase::Stopped && self.shown != Some(step)).then_some(step);
+        let mut closed = self.write_checkpoint(comm, stop);
+        if stop.is_some() {
+            closed = closed.and_then(|()| self.write_stop(comm));
+        }
+        let closed = closed.and_then(|()| {
             self.output_time.add(begun);
             let clock = Clock {
                 wall: self.start.elapsed().as_secs_f64(),

@@ -19,6 +19,8 @@ pub struct Origin {
     pub checkpoint: PathBuf,
     /// Its particles, of this rank.
     pub particles: ParticleStore,
+    /// Step of the snapshot that a stop wrote after the checkpoint.
+    pub stop: Option<u64>,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,
     /// Folder of the continued run.
@@ -69,7 +71,7 @@ pub fn go_on(
     };
     let begun = if origin.own {
         let resolved = resolved_case.renew.then_some(&resolved[..]);
-        folder.resume(comm, resolved, step, time, &origin.passed_over)
+        folder.resume(comm, resolved, step, time, origin.stop, &origin.passed_over)
     } else {
         let created = folder.create(comm, &resolved, force);
         created.map(|kept| {

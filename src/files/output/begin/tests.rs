@@ -138,7 +138,7 @@ fn a_restart_sets_aside_what_came_after_its_checkpoint() {
     };
     let before = names(&run);
     let resume = |run: &mut RunFolder, passed_over: &[PathBuf]| {
-        let aside = run.resume(&comm, Some("edited"), 4, 4.0, passed_over);
+        let aside = run.resume(&comm, Some("edited"), 4, 4.0, None, passed_over);
         aside.unwrap().unwrap()
     };
     // A restart that could not begin leaves the folder as it was.

@@ -8,13 +8,20 @@ use comm::Comm;
 use engine::step::measurements;
 
 impl Driver<'_> {
-    /// Writes a checkpoint.
-    pub(super) fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
+    /// Writes a checkpoint; `stop` is the step of a snapshot that follows it.
+    pub(super) fn write_checkpoint(
+        &mut self,
+        comm: &Comm,
+        stop: Option<u64>,
+    ) -> Result<(), OutputError> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         let step = self.simulation.state.step;
-        let mut results = ResultExtents::default();
+        let mut results = ResultExtents {
+            stop,
+            ..ResultExtents::default()
+        };
         self.folder.on_root(comm, || {
             self.folder.list_checkpoint(step)?;
             if let Some(tables) = &mut self.tables {

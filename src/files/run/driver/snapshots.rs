@@ -15,11 +15,27 @@ impl Driver<'_> {
         step: Option<[f64; 2]>,
         census_due: bool,
     ) -> Result<(), OutputError> {
-        let begun = Instant::now();
         let is_due = |plan: &snapshot::Plan| step.is_none_or(|[a, b]| plan.is_due(a, b));
         let due: Vec<bool> = self.plans.iter().map(is_due).collect();
+        self.write_due(comm, &due, census_due)
+    }
+
+    /// Writes the default snapshot where a run stops.
+    pub(super) fn write_stop(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let due: Vec<bool> = (0..self.plans.len()).map(|k| k == 0).collect();
+        self.write_due(comm, &due, false)
+    }
+
+    /// Writes the snapshots of some of the plans.
+    fn write_due(
+        &mut self,
+        comm: &Comm,
+        due: &[bool],
+        census_due: bool,
+    ) -> Result<(), OutputError> {
+        let begun = Instant::now();
         self.simulation.complete_shown(comm);
-        let mut chosen = self.plans.iter().zip(&due).filter(|(_, due)| **due);
+        let mut chosen = self.plans.iter().zip(due).filter(|(_, due)| **due);
         let labels = if census_due || chosen.any(|(plan, _)| plan.shows_fragments()) {
             self.find_fragments(comm, census_due)?
         } else {
@@ -30,6 +46,7 @@ impl Driver<'_> {
             // Snapshots of portions say little about the time of a checkpoint.
             if k == 0 {
                 self.watch.wrote_snapshot(begun.elapsed());
+                self.shown = Some(self.simulation.state.step);
             }
         }
         self.output_time.snapshots += begun.elapsed();
