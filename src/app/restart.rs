@@ -264,7 +264,7 @@ fn resume(
         return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
-    let mut stop = None;
+    let mut stop = false;
     if let Some(own) = own {
         let known = from_root(comm, || {
             let results = checkpoint::manifest(&loaded.checkpoint)?.results;

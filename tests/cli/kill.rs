@@ -230,7 +230,8 @@ fn kill_points(time: Option<Duration>) {
     // A restart after a kill: rows and snapshots later than the checkpoint, and a damaged one.
     let killed = place.path("killed");
     let keep = ["--set", "output.checkpoints_kept=2"];
-    let more = [&keep[..], &["--until", &until(&reference, 11)]].concat();
+    let step_11 = until(&reference, 11);
+    let more = [&keep[..], &["--until", &step_11]].concat();
     end(&mut place.run(&killed, &more)).with_code(0);
     fs::write(killed.join("checkpoints/step-00000011/state.h5"), "").unwrap();
     let prepare = |run: &Path| copy(&killed, run);

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use comm::Comm;
 use uuid::Uuid;
 
-use super::checkpoint::{self, step_of};
+use super::checkpoint::{self, run_of, step_of};
 use super::files::names_in;
 use super::listing::LISTING;
 use super::lock::{LOCK, RunLock};
@@ -113,7 +113,7 @@ impl RunFolder {
             self.refuse(force)?;
             kept = self.clear()?;
             // List and status first, by which the folder is a run that --force clears.
-            self.begin_listing()?;
+            self.begin_listing(&[])?;
             self.begin(0, 0.0, Some(resolved))?;
             self.make_folders()?;
             files::sync_folder(path)?;
@@ -148,10 +148,20 @@ impl RunFolder {
         resolved: Option<&str>,
         step: u64,
         time: f64,
-        stop: Option<u64>,
+        stop: bool,
         passed_over: &[PathBuf],
     ) -> Result<Option<SetAside>, OutputError> {
-        let known = || self.status().ok().and_then(|status| status.run);
+        let known = || {
+            let status = self.status().ok().and_then(|status| status.run);
+            // An earlier version may have written the status since.
+            let newest = || {
+                self.checkpoint_folders()
+                    .ok()?
+                    .iter()
+                    .find_map(|path| run_of(path))
+            };
+            status.or_else(newest)
+        };
         self.id = Some(from_root(
             comm,
             || Ok(known().unwrap_or_else(Uuid::new_v4)),
@@ -159,7 +169,7 @@ impl RunFolder {
         let mut aside = None;
         self.on_root(comm, || {
             if !self.has_listing() {
-                self.begin_listing()?;
+                self.begin_listing(&self.unlisted(&CHANGED)?)?;
             }
             self.make_folders()?;
             let mut files = SetAside::new(&self.path)?;
@@ -183,7 +193,7 @@ impl RunFolder {
         aside: &mut SetAside,
         step: u64,
         time: f64,
-        stop: Option<u64>,
+        stop: bool,
         passed_over: &[PathBuf],
     ) -> Result<(), OutputError> {
         for path in passed_over {
@@ -200,14 +210,14 @@ impl RunFolder {
         for schedule in self.all_schedules()? {
             let series = self.series_of(schedule.as_deref());
             aside.copy(&series)?;
-            let stop = stop.filter(|_| schedule.is_none());
-            let stop_name = stop.map(Self::snapshot_name);
+            let is_of_stop = |other| stop && schedule.is_none() && other == step;
+            let of_stop = Self::snapshot_name(step);
             series::keep(&series, |entry| {
-                entry.time <= time && stop_name.as_ref() != Some(&entry.name)
+                entry.time <= time && !(is_of_stop(step) && entry.name == of_stop)
             })?;
             for path in self.snapshot_files_of(schedule.as_deref())? {
                 if step_of(&path, SNAPSHOT_ENDING)
-                    .is_some_and(|other| other > step || stop == Some(other))
+                    .is_some_and(|other| other > step || is_of_stop(other))
                 {
                     aside.take(&path)?;
                 }

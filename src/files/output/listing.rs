@@ -22,10 +22,15 @@ pub(super) const LISTING: &str = "files.txt";
 const ALWAYS: [&str; 5] = [LISTING, STATUS, "case.toml", "log.txt", "summary.json"];
 
 impl RunFolder {
-    /// Begins the list of a run's files.
-    pub(super) fn begin_listing(&self) -> Result<(), OutputError> {
-        let text = ALWAYS.map(|name| format!("{name}\n")).concat();
-        write_atomically(&self.listing(), text.as_bytes())
+    /// Begins the list of a run's files, some of which may be there.
+    pub(super) fn begin_listing(&self, there: &[String]) -> Result<(), OutputError> {
+        let always = ALWAYS.map(str::to_owned);
+        let lines: Vec<_> = always
+            .iter()
+            .chain(there)
+            .map(|name| format!("{name}\n"))
+            .collect();
+        write_atomically(&self.listing(), lines.concat().as_bytes())
     }
 
     /// Returns true if there is a list that a run has begun.
@@ -34,12 +39,12 @@ impl RunFolder {
         read_small(&self.listing()).is_ok_and(|text| text.starts_with(begin.as_bytes()))
     }
 
-    /// Lists a file that the run is about to make. Rank 0's alone.
+    /// Lists a file that the run, once it has begun, is about to make. Rank 0's alone.
     ///
     /// # Errors
     /// [`OutputError::Io`].
     pub fn list(&self, path: &Path) -> Result<(), OutputError> {
-        if fs::symlink_metadata(path).is_ok() {
+        if self.id.is_none() || fs::symlink_metadata(path).is_ok() {
             return Ok(());
         }
         let name = path.strip_prefix(&self.path).unwrap_or(path);
@@ -56,10 +61,29 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn list_checkpoint(&self, step: u64) -> Result<(), OutputError> {
+        let [state, manifest] = self.files_of_checkpoint(step);
+        self.list(&state).and_then(|()| self.list(&manifest))
+    }
+
+    fn files_of_checkpoint(&self, step: u64) -> [PathBuf; 2] {
         let folder = self.checkpoints().join(folder_name(step));
-        [STATE, MANIFEST]
-            .iter()
-            .try_for_each(|name| self.list(&folder.join(name)))
+        [STATE, MANIFEST].map(|name| folder.join(name))
+    }
+
+    /// Names of the files that are there of a run which has no list, as runs of earlier versions.
+    pub(super) fn unlisted(&self, tables: &[&str]) -> Result<Vec<String>, OutputError> {
+        let mut paths: Vec<_> = tables.iter().map(|name| self.path.join(name)).collect();
+        for schedule in self.all_schedules()? {
+            paths.push(self.series_of(schedule.as_deref()));
+        }
+        for (step, _) in checkpoint::list(&self.checkpoints())? {
+            paths.extend(self.files_of_checkpoint(step));
+        }
+        let there = paths.iter().filter(|path| path.is_file());
+        let names = there.filter_map(|path| path.strip_prefix(&self.path).ok());
+        let mut names: Vec<_> = names.map(|name| name.display().to_string()).collect();
+        names.extend(self.result_files()?);
+        Ok(names)
     }
 
     /// Removes the files of a run at once, as `--force` demands, and returns those that are not its own.

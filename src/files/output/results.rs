@@ -14,10 +14,10 @@ pub struct ResultExtents {
     pub tables: Vec<TableExtent>,
     /// Other files, by their names in the run's folder.
     pub files: Vec<String>,
-    /// Step of a default snapshot that no schedule asked for: a stop writes it after the checkpoint, and a
-    /// restart from there sets it aside.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub stop: Option<u64>,
+    /// Set if a stop writes a default snapshot after the checkpoint, which no schedule asked for: a restart from
+    /// there sets it aside.
+    #[serde(default)]
+    pub stop: bool,
 }
 
 /// What a table of text held.

@@ -296,7 +296,7 @@ impl<'a> Driver<'a> {
         // A stop writes its own.
         let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
         if checkpoint_due && !finished && !stops {
-            self.write_checkpoint(comm, None)?;
+            self.write_checkpoint(comm, false)?;
         }
         if snapshot_due || checkpoint_due {
             self.folder.on_root(comm, || self.write_running())?;
@@ -340,10 +340,9 @@ impl<'a> Driver<'a> {
         let begun = Instant::now();
         let mut output = String::new();
         // A stopped run shows where it is.
-        let step = self.simulation.state.step;
-        let stop = (phase == Phase::Stopped && self.shown != Some(step)).then_some(step);
+        let stop = phase == Phase::Stopped && self.shown != Some(self.simulation.state.step);
         let mut closed = self.write_checkpoint(comm, stop);
-        if stop.is_some() {
+        if stop {
             closed = closed.and_then(|()| self.write_stop(comm));
         }
         let closed = closed.and_then(|()| {

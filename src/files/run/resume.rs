@@ -19,8 +19,8 @@ pub struct Origin {
     pub checkpoint: PathBuf,
     /// Its particles, of this rank.
     pub particles: ParticleStore,
-    /// Step of the snapshot that a stop wrote after the checkpoint.
-    pub stop: Option<u64>,
+    /// Set if a stop wrote a snapshot after the checkpoint.
+    pub stop: bool,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,
     /// Folder of the continued run.

@@ -10,6 +10,7 @@ use model::Case;
 
 /// Sets the case up, only then clears the folder of an earlier run, and steps to the end;
 /// returns the exit code. Prints warnings about the case and `more`. Collective.
+#[must_use]
 pub fn start(
     launch: &Launch,
     args: &CommonArgs,

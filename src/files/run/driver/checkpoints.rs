@@ -8,12 +8,8 @@ use comm::Comm;
 use engine::step::measurements;
 
 impl Driver<'_> {
-    /// Writes a checkpoint; `stop` is the step of a snapshot that follows it.
-    pub(super) fn write_checkpoint(
-        &mut self,
-        comm: &Comm,
-        stop: Option<u64>,
-    ) -> Result<(), OutputError> {
+    /// Writes a checkpoint; `stop` if the snapshot of a stop follows it.
+    pub(super) fn write_checkpoint(&mut self, comm: &Comm, stop: bool) -> Result<(), OutputError> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
