@@ -10,7 +10,7 @@ use super::neighbours;
 use super::report::Row;
 use comm::Comm;
 use engine::step::{Phase, Simulation, measurements};
-use files::output::{RowSchedule, Rows, checkpoint, from_root};
+use files::output::{ResultExtents, RowSchedule, Rows, checkpoint, from_root};
 use particles::ParticleStore;
 
 /// Steps before the timed ones, in which buffers grow, caches fill and, over one interval between
@@ -25,10 +25,12 @@ pub fn prepare(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<(), Stri
     let simulation = stepped(comm, bench)?;
     let state = &simulation.state;
     let meta = checkpoint::Meta {
+        run: None,
         step: state.step,
         time: state.time,
         state: &serde_json::to_string(state).map_err(|e| e.to_string())?,
         input: &simulation.case.resolved,
+        results: &ResultExtents::default(),
     };
     let mut rows = Rows::default();
     checkpoint::write(comm, folder, &simulation.particles, &meta, 1, &mut rows)

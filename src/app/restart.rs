@@ -7,9 +7,9 @@ use comm::Comm;
 use engine::step::RunState;
 use files::input;
 use files::output::checkpoint::{self, MANIFEST, Restored};
-use files::output::{OutputError, Phase, RunFolder, RunLock, from_root, snapshot};
+use files::output::{OutputError, Phase, RunFolder, from_root, snapshot};
 use files::run::CommonArgs;
-use files::run::launch::{Launch, warn, with_ranks};
+use files::run::launch::{Launch, same_options, warn, with_ranks};
 use files::run::resume::{Origin, go_on, nothing_to_do, state_of};
 use files::run::saved_case;
 use files::run::say::say;
@@ -45,6 +45,10 @@ pub struct RestartArgs {
     #[arg(long)]
     accept_case: bool,
 
+    /// Refuse to go on if results that the checkpoint stands on are lost or changed
+    #[arg(long)]
+    strict: bool,
+
     #[command(flatten)]
     common: CommonArgs,
 
@@ -58,17 +62,20 @@ pub fn run(args: &RestartArgs) -> u8 {
     args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
+        if let Err(error) = same_options(comm, args) {
+            return warn(comm, &format!("error: {error}"));
+        }
         if let Err(error) = input::output_and_run_only(&args.set) {
             return warn(comm, &error.to_string());
         }
         let refused = |error: OutputError| warn(comm, &format!("error: {error}"));
-        let named = match locate(comm, args) {
+        let mut named = match locate(comm, args) {
             Ok(named) => named,
             Err(error) => return refused(error),
         };
         // Held to the end: nobody else may change what is read.
-        let lock = match named.take(comm, args) {
-            Ok(lock) => lock,
+        let warnings = match named.take(comm, args) {
+            Ok(warnings) => warnings,
             Err(error) => return refused(error),
         };
         let listed = find(comm, &named).map_err(|error| refusal(&error));
@@ -77,7 +84,7 @@ pub fn run(args: &RestartArgs) -> u8 {
             launch.start_threads(args.common.threads);
             read(comm, &args.from, named, paths, passed_over)
         });
-        let ended = loaded.and_then(|loaded| resume(launch, args, loaded, lock.as_ref()));
+        let ended = loaded.and_then(|loaded| resume(launch, args, loaded, warnings));
         ended.unwrap_or_else(|message| warn(comm, &message))
     })
 }
@@ -131,7 +138,7 @@ fn locate(comm: &Comm, args: &RestartArgs) -> Result<Named, OutputError> {
 
 impl Named {
     /// Takes the folder of the results. Collective.
-    fn take(&self, comm: &Comm, args: &RestartArgs) -> Result<Option<RunLock>, OutputError> {
+    fn take(&mut self, comm: &Comm, args: &RestartArgs) -> Result<Vec<String>, OutputError> {
         let ignore = args.common.ignore_lock;
         if self.own {
             self.folder.take(comm, ignore)
@@ -235,7 +242,7 @@ fn resume(
     launch: &Launch,
     args: &RestartArgs,
     loaded: LoadedCheckpoint,
-    lock: Option<&RunLock>,
+    more: Vec<String>,
 ) -> Result<u8, String> {
     let comm = launch.comm;
     let name = loaded.checkpoint.display().to_string();
@@ -257,7 +264,25 @@ fn resume(
         return Ok(0);
     }
     let mut warnings = settled.warnings.clone();
-    warnings.extend(lock.iter().flat_map(|lock| lock.warnings.iter().cloned()));
+    let mut stop = false;
+    if let Some(own) = own {
+        let known = from_root(comm, || {
+            let results = checkpoint::manifest(&loaded.checkpoint)?.results;
+            Ok((own.losses(&results), results.stop))
+        });
+        let losses;
+        (losses, stop) = known.map_err(|error| format!("error: {error}"))?;
+        if args.strict && !losses.is_empty() {
+            return Err(format!(
+                "error: {}: {}",
+                own.path().display(),
+                losses.join("; ")
+            ));
+        }
+        let told = |loss| format!("{}: {loss}", own.path().display());
+        warnings.extend(losses.into_iter().map(told));
+    }
+    warnings.extend(more);
     warnings.extend(loaded.warnings());
     let passed = loaded
         .passed_over
@@ -265,6 +290,7 @@ fn resume(
         .map(|passed| (&passed.path).into());
     let origin = Origin {
         passed_over: passed.collect(),
+        stop,
         checkpoint: loaded.checkpoint,
         particles: loaded.particles,
         folder: loaded.named.folder,

@@ -6,7 +6,7 @@ use comm::Comm;
 use files::input;
 use files::output::{RunFolder, snapshot};
 use files::run::CommonArgs;
-use files::run::launch::{warn, with_ranks};
+use files::run::launch::{same_case, same_options, warn, with_ranks};
 use files::run::start::start;
 
 /// Run a case from its start
@@ -51,11 +51,15 @@ pub fn run(args: &RunArgs) -> u8 {
     args.common.verbosity().begin();
     with_ranks(|launch| {
         let comm = launch.comm;
+        if let Err(error) = same_options(comm, args) {
+            return warn(comm, &format!("error: {error}"));
+        }
         let (path, text) = match read_case(comm, &args.case) {
             Ok(read) => read,
             Err(message) => return warn(comm, &message),
         };
-        let case = match input::parse(&path.display().to_string(), &text, &args.set) {
+        let read = input::parse(&path.display().to_string(), &text, &args.set);
+        let case = match same_case(comm, read) {
             Ok(case) => case,
             Err(error) => return warn(comm, &error.to_string()),
         };
@@ -66,13 +70,11 @@ pub fn run(args: &RunArgs) -> u8 {
             return warn(comm, &message);
         }
         let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
-        // Held to the end.
-        let lock = match RunFolder::at(&out).take_new(comm, args.force, args.common.ignore_lock) {
-            Ok(lock) => lock,
-            Err(error) => return warn(comm, &format!("error: {error}")),
-        };
-        let warnings = lock.iter().flat_map(|lock| lock.warnings.iter().cloned());
-        start(launch, &args.common, case, &out, args.force, warnings)
+        let mut folder = RunFolder::at(&out);
+        match folder.take_new(comm, args.force, args.common.ignore_lock) {
+            Ok(more) => start(launch, &args.common, case, folder, args.force, more),
+            Err(error) => warn(comm, &format!("error: {error}")),
+        }
     })
 }
 

@@ -1,10 +1,14 @@
 //! One rank's trouble ends all ranks in seconds, with one message.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use crate::program::{Ended, assert_same, coarse_run, end, ranks, signal, start, status, strike};
+use crate::program::{
+    COARSE, Ended, WHIPPLE, assert_same, coarse_run, command, end, project, quarter_impact, ranks,
+    signal, start, status, strike,
+};
 
 /// A run takes a second or so, and mpirun gives ranks that do not end by themselves two more.
 const SECONDS: Duration = Duration::from_secs(40);
@@ -210,4 +214,77 @@ fn on_small_disk(folder: &Path, bytes: u64, task: impl FnOnce(&Path)) -> bool {
         std::panic::resume_unwind(panic);
     }
     true
+}
+
+/// One rank with these arguments, and one with those.
+fn apart(first: &[&str], second: &[&str], out: &Path) -> Ended {
+    let mut both = command("mpirun");
+    both.args(["-n", "1"]).args(first).arg("--out").arg(out);
+    both.args([":", "-n", "1"])
+        .args(second)
+        .arg("--out")
+        .arg(out);
+    end(&mut both)
+}
+
+#[test]
+fn ranks_with_other_options_or_another_case_are_told() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("run");
+    let case = quarter_impact();
+    let run = [&[WHIPPLE, "run", &case], &COARSE[..]].concat();
+    let longer = [&run[..], &["--set", "run.end_time=1us"]].concat();
+    let ended = apart(&run, &longer, &out).with_code(2);
+    assert!(only_line(&ended).starts_with("error: rank 1 has other options"));
+
+    // A machine of its own may have a file of its own, or none.
+    let cube = fs::read_to_string(project("tests/common/cube.obj")).unwrap();
+    let parts = [
+        Some(cube.clone()),
+        Some(cube.replace("v 0 0 0", "v 0 0 0.1")),
+        None,
+    ];
+    let folders = ["a", "b", "c"].map(|name| place.path().join(name));
+    for (folder, part) in folders.iter().zip(parts) {
+        fs::create_dir(folder).unwrap();
+        let text = "dimension = 3\nspacing = \"0.1 mm\"\nrun.end_time = \"0.2 us\"\n\
+                    material.metal.library = \"copper\"\n[[body]]\nname = \"part\"\nmaterial = \"metal\"\n\
+                    shape.obj = { file = \"part.obj\", unit = \"0.1 mm\" }\n";
+        fs::write(folder.join("case.toml"), text).unwrap();
+        if let Some(part) = part {
+            fs::write(folder.join("part.obj"), part).unwrap();
+        }
+    }
+    let [a, b, c] = folders.each_ref().map(|folder| {
+        let folder = folder.to_str().unwrap();
+        ["-wdir", folder, WHIPPLE, "run", "case.toml"]
+    });
+    let ended = apart(&a, &b, &out).with_code(2);
+    assert_eq!(
+        only_line(&ended),
+        "error: rank 1 has read another case than rank 0"
+    );
+    let ended = apart(&a, &c, &out).with_code(2);
+    assert!(ended.stderr.contains("part.obj"), "{ended:#?}");
+    assert!(!out.exists());
+}
+
+#[test]
+fn a_launcher_of_another_mpi_is_told() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let mut alone = command(WHIPPLE);
+    alone.env("PMI_SIZE", "4").env("PMI_RANK", "0");
+    alone
+        .args(["run", &quarter_impact()])
+        .args(COARSE)
+        .arg("--out")
+        .arg(&run);
+    let ended = end(&mut alone).with_code(1);
+    let told = only_line(&ended);
+    assert!(
+        told.contains("4 ranks (PMI_SIZE), and MPI (Open MPI"),
+        "{told}"
+    );
+    assert!(!run.exists());
 }

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::program::{
-    Ended, WHIPPLE, assert_same, coarse_run, command, end, quarter_impact, ranks, signal, start,
-    status, strike,
+    Ended, Running, WHIPPLE, assert_same, coarse_run, command, end, quarter_impact, ranks, signal,
+    start, status, strike,
 };
 
 fn info(run: &Path) -> String {
@@ -151,6 +151,140 @@ fn a_folder_belongs_to_one_run_at_a_time() {
     let reference = place.path().join("reference");
     end(coarse_run(1, &reference).args(["--set", "output.checkpoint_every_steps=10"])).with_code(0);
     assert_same(&run, &reference);
+}
+
+/// A run that is held up in its middle, with checkpoints at steps 10 and 20.
+fn paused(run: &Path) -> Running {
+    let mut command = coarse_run(2, run);
+    strike(&mut command, "pause:0:30");
+    let running = start(command.args(["--set", "output.checkpoint_every_steps=10"]));
+    running.until_step(run, 29);
+    running
+}
+
+#[test]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
+fn a_run_whose_folder_is_removed_or_moved_makes_nothing_anew() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("removed");
+    let running = paused(&run);
+    fs::remove_dir_all(&run).unwrap();
+    let ended = running.end().with_code(1);
+    assert!(
+        ended
+            .stderr
+            .contains("it was removed; nothing more is written, and no checkpoint of it is left"),
+        "{ended:#?}"
+    );
+    assert!(!run.exists());
+
+    let [run, there] = ["moved", "there"].map(|name| place.path().join(name));
+    let running = paused(&run);
+    fs::rename(&run, &there).unwrap();
+    let ended = running.end().with_code(1);
+    for text in [
+        format!("it was moved to {}", there.display()),
+        format!("{}/checkpoints/step-00000020", there.display()),
+    ] {
+        assert!(ended.stderr.contains(&text), "{ended:#?}");
+    }
+    assert!(!run.exists() && !there.join("lock").exists());
+    assert_eq!(status(&there).0, "failed");
+    // It goes on there as if nothing had been.
+    restart(&there, &[]).with_code(0);
+    let reference = place.path().join("reference");
+    end(coarse_run(1, &reference).args(["--set", "output.checkpoint_every_steps=10"])).with_code(0);
+    assert_same(&there, &reference);
+}
+
+#[test]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
+fn a_second_run_in_a_folder_whose_lock_was_removed_stops_the_first() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let more = ["--force", "--set", "run.end_time=0.1us"];
+    for all in [true, false] {
+        let first = paused(&run);
+        if all {
+            fs::remove_dir_all(&run).unwrap();
+        } else {
+            fs::remove_file(run.join("lock")).unwrap();
+        }
+        let second = start(coarse_run(1, &run).args(more));
+        let ended = first.end().with_code(1);
+        let told = ["has taken it", "was removed; nothing more"];
+        assert!(
+            told.iter().any(|told| ended.stderr.contains(told)),
+            "{ended:#?}"
+        );
+        second.end().with_code(0);
+        let reference = place.path().join(format!("reference-{all}"));
+        end(coarse_run(1, &reference).args(more)).with_code(0);
+        assert_same(&run, &reference);
+        fs::remove_dir_all(&run).unwrap();
+    }
+}
+
+#[test]
+fn results_that_a_restart_stands_on_and_that_are_lost_are_told() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    stopped(&run);
+    let whole = place.path().join("whole");
+    copy(&run, &whole);
+    let history = fs::read_to_string(run.join("history.csv")).unwrap();
+    let lines: Vec<&str> = history.lines().collect();
+    let middle = lines.len() / 2;
+    let cut = [&lines[..middle], &lines[middle + 1..], &[""]].concat();
+    fs::write(run.join("history.csv"), cut.join("\n")).unwrap();
+    fs::remove_file(run.join("contacts.csv")).unwrap();
+    fs::remove_file(run.join("snapshots/step-00000000.vtkhdf")).unwrap();
+    let rows = lines.len() - 2;
+    let told = [
+        &format!("history.csv has other rows than the {rows} that it had")[..],
+        "contacts.csv with ",
+        "snapshots/step-00000000.vtkhdf is missing",
+    ];
+    assert_refused(&run, &["--strict"], 2, &told);
+    let ended = restart(&run, &[]).with_code(0);
+    assert!(
+        told.iter().all(|text| ended.stderr.contains(text)),
+        "{ended:#?}"
+    );
+    let ended = restart(&whole, &["--strict"]).with_code(0);
+    assert_eq!(ended.stderr, "");
+}
+
+#[test]
+fn results_of_another_run_in_a_folder_are_refused_by_name() {
+    let place = tempfile::tempdir().unwrap();
+    let [run, other] = ["run", "other"].map(|name| place.path().join(name));
+    stopped(&run);
+    stopped(&other);
+    let [ours, theirs] = [&run, &other].map(|run| newest(run));
+    fs::remove_dir_all(&ours).unwrap();
+    copy(&theirs, &ours);
+    assert_refused(
+        &run,
+        &[],
+        2,
+        &["is of the run ", "two runs have written there"],
+    );
+
+    let first = "snapshots/step-00000000.vtkhdf";
+    fs::copy(other.join(first), run.join(first)).unwrap();
+    let picture = place.path().join("picture.png");
+    let mut plot = command(WHIPPLE);
+    let ended = end(plot
+        .arg("plot")
+        .arg(run.join(first))
+        .arg("--out")
+        .arg(&picture));
+    assert_ne!(ended.code, Some(0));
+    assert!(
+        ended.stderr.contains("step-00000000.vtkhdf is of the run "),
+        "{ended:#?}"
+    );
 }
 
 #[test]

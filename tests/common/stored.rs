@@ -84,6 +84,7 @@ pub fn case() -> Case {
 
 pub fn meta(case: &Case) -> snapshot::Meta<'_> {
     snapshot::Meta {
+        run: None,
         case,
         step: 12,
         time: 3.5e-8,

@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 use crate::stored::{case, particles};
 use comm::Comm;
 use files::output::h5::{Element, RowType, Writer};
-use files::output::{Block, OutputError, Rows, checkpoint, write_json};
+use files::output::{Block, OutputError, ResultExtents, Rows, checkpoint, write_json};
 use particles::{FieldKind, Life, ParticleStore, rows};
 
 fn write(folder: &Path, step: u64, keep: usize) -> PathBuf {
     let (comm, case) = (Comm::solo(), case());
     let meta = checkpoint::Meta {
+        run: None,
         step,
         time: 1e-9,
         state: "{}",
         input: &case.resolved,
+        results: &ResultExtents::default(),
     };
     let particles = particles(&comm, 40);
     checkpoint::write(&comm, folder, &particles, &meta, keep, &mut Rows::default()).unwrap()

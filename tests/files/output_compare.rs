@@ -8,14 +8,15 @@ use app::compare::{Report, compare};
 use app::info::describe;
 use comm::Comm;
 use files::output::{
-    Column, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
+    Column, ResultExtents, Rows, RunFolder, Table, Value, checkpoint, series, snapshot, write_json,
 };
 use particles::{ParticleStore, SCRATCH_WORDS};
 
 /// A run folder of 30 particles with all that a run writes, after `change` of the particles.
 fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf {
     let (comm, case, mut rows) = (Comm::solo(), case(), Rows::default());
-    let folder = RunFolder::create(&comm, &place.join(name), &case.resolved, true).unwrap();
+    let mut folder = RunFolder::at(&place.join(name));
+    folder.create(&comm, &case.resolved, true).unwrap();
     let mut particles = particles(&comm, 30);
     for k in 0..30 {
         particles.body[k] = u32::try_from(k % 2).unwrap();
@@ -34,10 +35,12 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
     .unwrap();
     series::add(&folder.series(), &RunFolder::snapshot_name(12), 3.5e-8).unwrap();
     let meta = checkpoint::Meta {
+        run: None,
         step: 12,
         time: 3.5e-8,
         state: r#"{"dt":1e-10}"#,
         input: &case.resolved,
+        results: &ResultExtents::default(),
     };
     checkpoint::write(
         &comm,

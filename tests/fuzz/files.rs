@@ -19,7 +19,7 @@ use comm::Comm;
 use engine::step::{RunState, Simulation};
 use files::input::parse;
 use files::output::binary_table::{self, BinaryTable, Cells};
-use files::output::{Column, Rows, checkpoint, snapshot};
+use files::output::{Column, ResultExtents, Rows, checkpoint, snapshot};
 use particles::ParticleStore;
 
 const CASE: &str = r#"
@@ -76,14 +76,17 @@ impl Bench {
         simulation.advance(&comm).unwrap();
         let (state, particles) = (&simulation.state, &simulation.particles);
         let meta = checkpoint::Meta {
+            run: None,
             step: state.step,
             time: state.time,
             state: &serde_json::to_string(state).unwrap(),
             input: &input,
+            results: &ResultExtents::default(),
         };
         let mut rows = Rows::default();
         let sound = checkpoint::write(&comm, place.path(), particles, &meta, 1, &mut rows).unwrap();
         let meta = snapshot::Meta {
+            run: None,
             case: &simulation.case,
             step: state.step,
             time: state.time,

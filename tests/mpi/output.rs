@@ -11,7 +11,7 @@ use comm::Comm;
 use files::output::h5::read::SnapshotFile;
 use files::output::h5::{Content, Element, RowType};
 use files::output::snapshot::{Portion, SnapshotFormat};
-use files::output::{Block, OutputError, Rows, checkpoint, snapshot};
+use files::output::{Block, OutputError, ResultExtents, Rows, checkpoint, snapshot};
 use model::{Precision, Sharing};
 use particles::{FIELDS, Life, ParticleStore, rows};
 
@@ -199,10 +199,12 @@ fn state() -> String {
 fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result<(), OutputError> {
     let (particles, case, state) = (particles(comm, total), case(), state());
     let meta = checkpoint::Meta {
+        run: None,
         step,
         time: f64::MIN_POSITIVE / 4.0,
         state: &state,
         input: &case.resolved,
+        results: &ResultExtents::default(),
     };
     let mut rows = Rows::default();
     checkpoint::write(comm, folder, &particles, &meta, 2, &mut rows).map(drop)
@@ -313,10 +315,12 @@ fn few_writers_and_aligned_arrays_write_the_same_rows() {
                 );
                 let state = state();
                 let meta = checkpoint::Meta {
+                    run: None,
                     step: total,
                     time: f64::MIN_POSITIVE / 4.0,
                     state: &state,
                     input: &case.resolved,
+                    results: &ResultExtents::default(),
                 };
                 let path = checkpoint::write(comm, folder, &particles, &meta, 9, &mut rows);
                 check_restored(comm, &path.unwrap(), total);

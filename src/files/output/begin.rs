@@ -3,15 +3,23 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use comm::Comm;
+use uuid::Uuid;
 
-use super::checkpoint::{self, step_of};
+use super::checkpoint::{self, run_of, step_of};
 use super::files::names_in;
+use super::listing::LISTING;
 use super::lock::{LOCK, RunLock};
-use super::run_folder::{FILES, FRAGMENTS_ENDING, HDF5_ENDING, SNAPSHOT_ENDING, STATUS, TROUBLE};
-use super::set_aside::{self, SET_ASIDE, SetAside};
-use super::{OutputError, Phase, RunFolder, Status, files, on_root, series, write_atomically};
+use super::run_folder::{SNAPSHOT_ENDING, STATUS};
+use super::set_aside::{SET_ASIDE, SetAside};
+use super::{
+    OutputError, Phase, RunFolder, Status, files, from_root, on_root, series, write_atomically,
+};
+
+/// Most files of a user's that are named.
+const TOLD: usize = 5;
 
 /// Files that a restart changes before it has a checkpoint.
 const CHANGED: [&str; 16] = [
@@ -36,17 +44,18 @@ const CHANGED: [&str; 16] = [
 impl RunFolder {
     /// Takes the folder of a new run, and makes it if need be; nothing in it changes. A folder with
     /// something in it is refused, unless `force` is given and it holds a run. One that a run has
-    /// open is refused unless `ignore` is given. The lock is rank 0's. Collective.
+    /// open is refused unless `ignore` is given. Rank 0 holds it for as long as `self` or a copy lives, and
+    /// receives the warnings. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Held`],
     /// [`OutputError::Unclear`], [`OutputError::Io`]; the same on every rank.
     pub fn take_new(
-        &self,
+        &mut self,
         comm: &Comm,
         force: bool,
         ignore: bool,
-    ) -> Result<Option<RunLock>, OutputError> {
+    ) -> Result<Vec<String>, OutputError> {
         let mut lock = None;
         on_root(comm, || {
             let path = &self.path;
@@ -59,74 +68,113 @@ impl RunFolder {
             // Another run may have begun and ended here before the lock was taken.
             self.refuse(force)
         })?;
-        Ok(lock)
+        Ok(self.hold(lock))
     }
 
-    /// Takes the folder of a run to continue it; nothing in it changes. The lock is rank 0's.
-    /// Collective.
+    /// Takes the folder of a run to continue it; nothing in it changes. Rank 0 holds it for as long as
+    /// `self` or a copy lives, and receives the warnings. Collective.
     ///
     /// # Errors
     /// [`OutputError::Held`], [`OutputError::Unclear`], [`OutputError::Io`]; the same on
     /// every rank.
-    pub fn take(&self, comm: &Comm, ignore: bool) -> Result<Option<RunLock>, OutputError> {
+    pub fn take(&mut self, comm: &Comm, ignore: bool) -> Result<Vec<String>, OutputError> {
         let mut lock = None;
         on_root(comm, || {
             lock = Some(RunLock::take(&self.path, ignore)?);
             Ok(())
         })?;
-        Ok(lock)
+        Ok(self.hold(lock))
     }
 
-    /// Makes the folder of a new run, with its resolved input. A folder with something in it is
+    fn hold(&mut self, lock: Option<RunLock>) -> Vec<String> {
+        self.lock = lock.map(Arc::new);
+        let lock = self.lock.iter();
+        lock.flat_map(|lock| lock.warnings.clone()).collect()
+    }
+
+    /// Begins a new run in its folder, with its resolved input. A folder with something in it is
     /// refused, unless `force` is given and it holds a run: then that run's files go, and
-    /// nothing else. Collective.
+    /// nothing else; tells on rank 0 what stays. Collective.
     ///
     /// # Errors
     /// [`OutputError::FolderInUse`], [`OutputError::NotARun`], [`OutputError::Io`]; the same on
     /// every rank.
     pub fn create(
+        &mut self,
         comm: &Comm,
-        path: &Path,
         resolved: &str,
         force: bool,
-    ) -> Result<Self, OutputError> {
-        let folder = Self::at(path);
-        on_root(comm, || {
-            fs::create_dir_all(path).map_err(OutputError::io("create the folder", path))?;
-            folder.refuse(force)?;
-            folder.clear()?;
-            // The status first, by which the folder is a run that --force clears.
-            folder.begin(0, 0.0, Some(resolved))?;
-            folder.make_folders()?;
+    ) -> Result<Option<String>, OutputError> {
+        self.id = Some(from_root(comm, || Ok(Uuid::new_v4()))?);
+        let path = &self.path;
+        let mut kept = Vec::new();
+        self.on_root(comm, || {
+            files::make_folder(path)?;
+            self.refuse(force)?;
+            kept = self.clear()?;
+            // List and status first, by which the folder is a run that --force clears.
+            self.begin_listing(&[])?;
+            self.begin(0, 0.0, Some(resolved))?;
+            self.make_folders()?;
             files::sync_folder(path)?;
             files::sync_folder(path.parent().unwrap_or(path))
         })?;
-        Ok(folder)
+        let names = kept.iter().filter_map(|kept| kept.strip_prefix(path).ok());
+        let names: Vec<_> = names.map(|name| name.display().to_string()).collect();
+        let (named, more) = names.split_at(names.len().min(TOLD));
+        let more = match more.len() {
+            0 => String::new(),
+            count => format!(" and {count} more"),
+        };
+        let text = format!(
+            "--force keeps what the run did not write: {}{more}",
+            named.join(", ")
+        );
+        Ok((!named.is_empty()).then_some(text))
     }
 
     /// Continues in the folder of an earlier run from a checkpoint of it, with a resolved input
     /// unless the one there stays. Checkpoints that were passed over as damaged get another name.
     /// Later files of the run are set aside until [`Self::forget_set_aside`], since the new
-    /// run writes them again; copies of the tables go there too, which [`super::Table::resume`] cuts.
+    /// run writes them again, and with them the snapshot that a `stop` wrote at this step; copies of the tables go there too, which [`super::Table::resume`] cuts.
     /// Collective.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Damaged`]; the same on every rank. The folder is then as
     /// it was.
     pub fn resume(
-        &self,
+        &mut self,
         comm: &Comm,
         resolved: Option<&str>,
         step: u64,
         time: f64,
+        stop: bool,
         passed_over: &[PathBuf],
     ) -> Result<Option<SetAside>, OutputError> {
+        let known = || {
+            let status = self.status().ok().and_then(|status| status.run);
+            // An earlier version may have written the status since.
+            let newest = || {
+                self.checkpoint_folders()
+                    .ok()?
+                    .iter()
+                    .find_map(|path| run_of(path))
+            };
+            status.or_else(newest)
+        };
+        self.id = Some(from_root(
+            comm,
+            || Ok(known().unwrap_or_else(Uuid::new_v4)),
+        )?);
         let mut aside = None;
-        on_root(comm, || {
+        self.on_root(comm, || {
+            if !self.has_listing() {
+                self.begin_listing(&self.unlisted(&CHANGED)?)?;
+            }
             self.make_folders()?;
             let mut files = SetAside::new(&self.path)?;
             let moved = self
-                .set_aside(&mut files, step, time, passed_over)
+                .set_aside(&mut files, step, time, stop, passed_over)
                 .and_then(|()| self.begin(step, time, resolved));
             if let Err(error) = moved {
                 files.undo();
@@ -145,6 +193,7 @@ impl RunFolder {
         aside: &mut SetAside,
         step: u64,
         time: f64,
+        stop: bool,
         passed_over: &[PathBuf],
     ) -> Result<(), OutputError> {
         for path in passed_over {
@@ -161,9 +210,15 @@ impl RunFolder {
         for schedule in self.all_schedules()? {
             let series = self.series_of(schedule.as_deref());
             aside.copy(&series)?;
-            series::keep_until(&series, time)?;
+            let is_of_stop = |other| stop && schedule.is_none() && other == step;
+            let of_stop = Self::snapshot_name(step);
+            series::keep(&series, |entry| {
+                entry.time <= time && !(is_of_stop(step) && entry.name == of_stop)
+            })?;
             for path in self.snapshot_files_of(schedule.as_deref())? {
-                if step_of(&path, SNAPSHOT_ENDING).is_some_and(|other| other > step) {
+                if step_of(&path, SNAPSHOT_ENDING)
+                    .is_some_and(|other| other > step || is_of_stop(other))
+                {
                     aside.take(&path)?;
                 }
             }
@@ -180,15 +235,6 @@ impl RunFolder {
         Ok(())
     }
 
-    /// Removes the files that restarts have set aside, if any: the run has a checkpoint of its own.
-    /// Rank 0's alone.
-    ///
-    /// # Errors
-    /// [`OutputError::Io`].
-    pub fn forget_set_aside(&self) -> Result<(), OutputError> {
-        set_aside::forget(&self.path)
-    }
-
     /// The folder of files that restarts have set aside, if there is one.
     #[must_use]
     pub fn set_aside_folder(&self) -> Option<PathBuf> {
@@ -203,14 +249,17 @@ impl RunFolder {
             outlook: before.and_then(|status| status.outlook),
             ..Status::new(Phase::Running, step, time)
         })?;
+        let run = self
+            .id
+            .map_or(String::new(), |run| format!("# run {run}\n"));
         resolved.map_or(Ok(()), |text| {
-            write_atomically(&self.case(), text.as_bytes())
+            write_atomically(&self.case(), format!("{run}{text}").as_bytes())
         })
     }
 
     fn make_folders(&self) -> Result<(), OutputError> {
         for path in [self.snapshots(), self.checkpoints()] {
-            fs::create_dir_all(&path).map_err(OutputError::io("create the folder", &path))?;
+            files::make_folder(&path)?;
         }
         Ok(())
     }
@@ -222,7 +271,7 @@ impl RunFolder {
             Ok(())
         } else if !force {
             Err(OutputError::FolderInUse { path })
-        } else if Self::is_run(&path) {
+        } else if Self::is_run(&path) && self.has_listing() {
             Ok(())
         } else {
             Err(OutputError::NotARun { path })
@@ -233,63 +282,14 @@ impl RunFolder {
     /// very beginning.
     fn is_empty(&self) -> Result<bool, OutputError> {
         let names = names_in(&self.path)?;
-        let unfinished = [LOCK, STATUS].map(|name| files::partial(Path::new(name)));
+        let unfinished = [LOCK, LISTING, STATUS].map(|name| files::partial(Path::new(name)));
         let is_nothing = |path: &PathBuf| {
-            path.ends_with(LOCK) || unfinished.iter().any(|name| path.ends_with(name))
+            path.ends_with(LOCK)
+                || path.ends_with(LISTING) && self.has_listing()
+                || unfinished.iter().any(|name| path.ends_with(name))
         };
         Ok(names.iter().all(is_nothing))
     }
-
-    /// Removes the files of a run at once, as `--force` demands. Checkpoints go first, each in one
-    /// rename and the newest first, so that a restart after an interrupted clearing finds whole ones or
-    /// none. The status stays until a new one replaces it, so that the folder remains one that
-    /// `--force` clears.
-    fn clear(&self) -> Result<(), OutputError> {
-        for (_, path) in checkpoint::list(&self.checkpoints())?.iter().rev() {
-            checkpoint::discard(path)?;
-        }
-        let mut folders = vec![
-            self.checkpoints(),
-            self.fragment_tables(),
-            self.gauge_records(),
-        ];
-        let schedules = self.all_schedules()?;
-        let schedules = schedules.iter().map(Option::as_deref);
-        folders.extend(schedules.clone().map(|name| self.snapshots_of(name)));
-        for folder in folders {
-            for path in names_in(&folder)? {
-                if is_ours(&path) {
-                    files::remove(&path)?;
-                }
-            }
-        }
-        for name in schedules.flatten() {
-            // With something of the user's in it, it stays.
-            let _ = fs::remove_dir(self.snapshots_of(Some(name)));
-        }
-        files::remove(&self.path.join(TROUBLE))?;
-        self.forget_set_aside()?;
-        for &name in FILES {
-            if name != STATUS {
-                files::remove(&self.path.join(name))?;
-            }
-            files::remove(&files::partial(&self.path.join(name)))?;
-        }
-        Ok(())
-    }
-}
-
-/// Returns true for names that a run writes into its folders of snapshots or checkpoints.
-fn is_ours(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let name = name.trim_end_matches(files::PARTIAL);
-    let name = Path::new(name.strip_suffix(".old").unwrap_or(name));
-    step_of(name, SNAPSHOT_ENDING).is_some()
-        || step_of(name, FRAGMENTS_ENDING).is_some()
-        || step_of(name, HDF5_ENDING).is_some()
-        || step_of(name, "").is_some()
-        || checkpoint::is_damaged(name)
-        || name.extension().is_some_and(|e| e == "series")
 }
 
 #[cfg(test)]

@@ -86,7 +86,7 @@ pub fn write(
 ) -> Result<(), OutputError> {
     let alone = Comm::solo();
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
+        files::make_folder(folder)?;
     }
     let temporary = files::partial(path);
     let written = write_file(&alone, &temporary, columns, cells, words);

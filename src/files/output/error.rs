@@ -3,6 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use uuid::Uuid;
+
 /// An error of writing or reading back.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
@@ -38,8 +40,8 @@ pub enum OutputError {
     },
     /// `--force` on a folder that no run has made.
     #[error(
-        "the folder {} is not empty and holds no run (no status.json), so --force does not clear \
-         it; choose another with --out",
+        "the folder {} is not empty and holds no run that lists its files (status.json, files.txt), so \
+         --force does not clear it; choose another with --out",
         path.display()
     )]
     NotARun {
@@ -118,6 +120,39 @@ pub enum OutputError {
         path: PathBuf,
         /// The holder.
         who: String,
+    },
+    /// The folder is no longer this run's.
+    #[error(
+        "the run no longer has its folder {}: {what}; nothing more is written, {}",
+        path.display(),
+        newest.as_ref().map_or_else(
+            || "and no checkpoint of it is left".to_owned(),
+            |newest| format!("the newest whole checkpoint is {}", newest.display())
+        )
+    )]
+    Lost {
+        /// The folder as it was taken.
+        path: PathBuf,
+        /// What became of it.
+        what: String,
+        /// The newest whole checkpoint.
+        newest: Option<PathBuf>,
+    },
+    /// A file of another run than the folder's.
+    #[error(
+        "{} is of the run {run}, and {} holds the run {own}: two runs have written there; move away what is          not of the one you want",
+        path.display(),
+        folder.display()
+    )]
+    OtherRun {
+        /// The file or checkpoint.
+        path: PathBuf,
+        /// Its run.
+        run: Uuid,
+        /// The run's folder.
+        folder: PathBuf,
+        /// Its run.
+        own: Uuid,
     },
     /// A run on another host has not closed the folder.
     #[error(

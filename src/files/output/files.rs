@@ -86,6 +86,17 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
     })
 }
 
+/// Makes a folder within one that exists. No path is made anew by its name: what was removed or moved
+/// stays so.
+pub(crate) fn make_folder(path: &Path) -> Result<(), OutputError> {
+    match fs::create_dir(path) {
+        Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+            Err(OutputError::io("create the folder", path)(error))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Gives a finished file or folder its name, and syncs its folder.
 pub(super) fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     fs::rename(temporary, path).map_err(OutputError::io("rename to", path))?;

@@ -84,6 +84,7 @@ impl GaugeRecords {
                 .map(|n| Cells::Reals(std::mem::take(n))),
         );
         let path = self.folder.gauge_record(last);
+        self.folder.list(&path)?;
         binary_table::write(&path, &self.columns, &cells, &self.gauges)
     }
 }

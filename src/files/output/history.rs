@@ -5,7 +5,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
+use sha2::{Digest, Sha256};
 
+use super::results::TableExtent;
 use super::{OutputError, sheet, write_atomically};
 
 /// One value of a row.
@@ -66,6 +68,10 @@ pub struct Table {
     path: PathBuf,
     file: File,
     columns: usize,
+    rows: u64,
+    /// Of all that is in the file.
+    bytes: u64,
+    digest: Sha256,
 }
 
 impl Table {
@@ -74,8 +80,9 @@ impl Table {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, OutputError> {
-        write_atomically(path, &header(columns))?;
-        Self::append(path, columns.len())
+        let header = header(columns);
+        write_atomically(path, &header)?;
+        Self::append(path, columns.len(), &header, 0)
     }
 
     /// Continues a table after a restart: keeps the rows whose value in `column` is at most
@@ -108,24 +115,40 @@ impl Table {
             let what = format!("it has no column {column}");
             return Err(OutputError::damaged(path, what));
         };
-        let mut kept = all;
-        let rows_kept = keep(rows, count, columns.len(), key, last);
-        kept.extend(rows_kept.map_err(|number| {
+        let kept = keep(rows, count, columns.len(), key, last);
+        let (kept, rows) = kept.map_err(|number| {
             let what =
                 format!("row {number} has not {count} values with a number in column {column}");
             OutputError::damaged(path, what)
-        })?);
-        write_atomically(path, &kept)?;
-        Self::append(path, columns.len())
+        })?;
+        let content = [all, kept].concat();
+        write_atomically(path, &content)?;
+        Self::append(path, columns.len(), &content, rows)
     }
 
-    fn append(path: &Path, columns: usize) -> Result<Self, OutputError> {
+    /// Opens a table of this content.
+    fn append(path: &Path, columns: usize, content: &[u8], rows: u64) -> Result<Self, OutputError> {
         let file = File::options().append(true).open(path);
         Ok(Self {
             path: path.to_owned(),
             file: file.map_err(OutputError::io("open", path))?,
             columns,
+            rows,
+            bytes: content.len() as u64,
+            digest: Sha256::new_with_prefix(content),
         })
+    }
+
+    /// What the table holds so far.
+    #[must_use]
+    pub fn extent(&self) -> TableExtent {
+        let name = self.path.file_name().unwrap_or_default();
+        TableExtent {
+            name: name.to_string_lossy().into_owned(),
+            rows: self.rows,
+            bytes: self.bytes,
+            sha256: format!("{:x}", self.digest.clone().finalize()),
+        }
     }
 
     /// A whole table, as its file holds it.
@@ -164,14 +187,19 @@ impl Table {
         &mut self,
         rows: impl IntoIterator<Item = impl AsRef<[Value<'a>]>>,
     ) -> Result<(), OutputError> {
-        let columns = self.columns;
+        let (columns, mut count) = (self.columns, 0);
         let lines = sheet::lines(rows.into_iter().map(|row| {
             let row = row.as_ref();
             assert_eq!(row.len(), columns, "a row of the wrong length");
+            count += 1;
             cells(row)
         }));
         let written = self.file.write_all(&lines);
-        written.map_err(OutputError::io("write", &self.path))
+        written.map_err(OutputError::io("write", &self.path))?;
+        self.rows += count;
+        self.bytes += lines.len() as u64;
+        self.digest.update(&lines);
+        Ok(())
     }
 
     /// Syncs the rows written so far to the disk.
@@ -195,7 +223,7 @@ fn cells(values: &[Value]) -> Vec<String> {
 }
 
 /// The bytes of those `rows` of `columns` values whose number in column `key` is at most `last`, filled
-/// with zeros to `wanted` columns; or the number of the first damaged row that has such a row after it.
+/// with zeros to `wanted` columns, and their number; or the number of the first damaged row that has such a row after it.
 /// Damaged rows at the end were half written, or are left by a power cut.
 fn keep(
     rows: &[u8],
@@ -203,8 +231,8 @@ fn keep(
     wanted: usize,
     key: usize,
     last: f64,
-) -> Result<Vec<u8>, usize> {
-    let mut kept = Vec::new();
+) -> Result<(Vec<u8>, u64), usize> {
+    let (mut kept, mut count) = (Vec::new(), 0);
     let mut reader = sheet::rows(rows);
     let mut record = ByteRecord::new();
     let (mut begin, mut wrong) = (0, None);
@@ -229,10 +257,11 @@ fn keep(
                 kept.extend_from_slice(&row[..row.len() - 1]);
                 kept.extend(b",0.0".repeat(wanted - columns));
                 kept.push(b'\n');
+                count += 1;
             }
         }
     }
-    Ok(kept)
+    Ok((kept, count))
 }
 
 fn header(columns: &[Column]) -> Vec<u8> {

@@ -6,8 +6,9 @@
 //! keeps them on each host for itself, only the content of the file counts.
 
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read as _, Write as _};
-use std::os::unix::fs::MetadataExt as _;
+use std::io::{self, Write as _};
+use std::os::fd::AsRawFd as _;
+use std::os::unix::fs::{FileExt as _, MetadataExt as _};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -104,11 +105,11 @@ impl Presence {
     /// Presence in the folder of a run, as far as this host can know.
     #[must_use]
     pub fn of(folder: &Path) -> Self {
-        let Ok(mut file) = File::open(folder.join(LOCK)) else {
+        let Ok(file) = File::open(folder.join(LOCK)) else {
             return Self::Nobody(None);
         };
         let verdict = file.try_lock_shared();
-        judge(verdict.as_ref().err(), read(&mut file), &Holder::here())
+        judge(verdict.as_ref().err(), read(&file), &Holder::here())
     }
 }
 
@@ -132,6 +133,8 @@ fn judge(refused: Option<&TryLockError>, holder: Option<Holder>, here: &Holder) 
 pub struct RunLock {
     path: PathBuf,
     file: File,
+    /// What this process has written into it.
+    holder: Holder,
     /// Set if the folder is removed as well when nothing is in it.
     of_new: bool,
     /// Warnings for the user.
@@ -155,7 +158,7 @@ impl RunLock {
                 path.display()
             ));
         }
-        let presence = judge(verdict.as_ref().err(), read(&mut file), &here);
+        let presence = judge(verdict.as_ref().err(), read(&file), &here);
         let describe = |who: &Option<Holder>| {
             let nameless = "a process that has not said its name".to_owned();
             who.as_ref().map_or(nameless, ToString::to_string)
@@ -190,6 +193,7 @@ impl RunLock {
         Ok(Self {
             path,
             file,
+            holder: here,
             of_new: false,
             warnings,
         })
@@ -200,15 +204,37 @@ impl RunLock {
         self.of_new = true;
         self
     }
+
+    /// The folder that this process holds, where it is now; `None` if it is gone, its lock was removed,
+    /// or another process has taken it.
+    pub(super) fn place(&self) -> Option<PathBuf> {
+        // Where the system says so, also that of a folder that has been moved.
+        let moved = fs::read_link(format!("/proc/self/fd/{}", self.file.as_raw_fd()));
+        let mut known = std::iter::once(self.path.clone()).chain(moved);
+        let path = known.find(|path| {
+            // Opened anew, since a network's file system renews what it knows of a file then.
+            let file = File::open(path).ok();
+            file.is_some_and(|file| {
+                is_same(&file, &self.file) && read(&file).as_ref() == Some(&self.holder)
+            })
+        })?;
+        Some(path.parent()?.to_owned())
+    }
+
+    /// Who has taken the folder from this process, if somebody has.
+    pub(super) fn successor(&self) -> Option<Holder> {
+        let holder = read(&File::open(&self.path).ok()?)?;
+        Some(holder).filter(|holder| *holder != self.holder)
+    }
 }
 
 impl Drop for RunLock {
     /// Removes the file, if it is still this process's, and with it the lock; also a folder that was
     /// made for a run which then did not begin.
     fn drop(&mut self) {
-        if is_at(&self.file, &self.path) {
-            let _ = fs::remove_file(&self.path);
-            if let Some(folder) = self.path.parent().filter(|_| self.of_new) {
+        if let Some(folder) = self.place() {
+            let _ = fs::remove_file(folder.join(LOCK));
+            if self.of_new {
                 // Refused where something is in it.
                 let _ = fs::remove_dir(folder);
             }
@@ -225,7 +251,8 @@ fn open(path: &Path) -> io::Result<(File, Result<(), TryLockError>)> {
         let verdict = file.try_lock();
         tries += 1;
         // A file that has just been removed is locked in vain.
-        let again = matches!(verdict, Err(TryLockError::WouldBlock)) || !is_at(&file, path);
+        let again = matches!(verdict, Err(TryLockError::WouldBlock))
+            || !File::open(path).is_ok_and(|there| is_same(&file, &there));
         if !again || tries == TRIES {
             return Ok((file, verdict));
         }
@@ -242,16 +269,16 @@ fn replace(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-fn is_at(file: &File, path: &Path) -> bool {
-    let ours = file.metadata().map(|meta| (meta.dev(), meta.ino()));
-    let there = fs::metadata(path).map(|meta| (meta.dev(), meta.ino()));
-    matches!((ours, there), (Ok(ours), Ok(there)) if ours == there)
+/// Returns true if two open files are one.
+fn is_same(a: &File, b: &File) -> bool {
+    let inode = |file: &File| file.metadata().map(|meta| (meta.dev(), meta.ino()));
+    matches!((inode(a), inode(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-fn read(file: &mut File) -> Option<Holder> {
-    let mut text = Vec::new();
-    file.take(1 << 12).read_to_end(&mut text).ok()?;
-    serde_json::from_slice(&text).ok()
+fn read(file: &File) -> Option<Holder> {
+    let mut text = [0; 1 << 12];
+    let length = file.read_at(&mut text, 0).ok()?;
+    serde_json::from_slice(&text[..length]).ok()
 }
 
 fn sign(file: &mut File, holder: &Holder) -> io::Result<()> {

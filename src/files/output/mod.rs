@@ -15,6 +15,7 @@ pub mod fragments;
 pub mod gauge_records;
 pub mod h5;
 mod history;
+mod listing;
 mod lock;
 mod log;
 pub mod measures;
@@ -22,6 +23,7 @@ mod new_file;
 pub mod partitions;
 pub mod post_mortem;
 mod quantity;
+mod results;
 mod row_schedule;
 mod rows;
 mod run_folder;
@@ -38,11 +40,13 @@ use std::sync::OnceLock;
 
 pub use block::Block;
 pub use error::OutputError;
+pub(crate) use files::make_folder;
 pub use files::{read_regular, read_small, write_atomically, write_json};
 pub use history::{Column, Table, Value, unit_of_model};
 pub use lock::{Holder, Presence, RunLock};
 pub use log::Log;
 pub use new_file::NewFile;
+pub use results::{ResultExtents, TableExtent};
 pub use row_schedule::RowSchedule;
 pub use rows::Rows;
 pub use run_folder::RunFolder;
@@ -52,7 +56,7 @@ pub use sheet::Sheet;
 pub use sheet::line as table_line;
 pub use status::{Energies, Outlook, Phase, Status};
 use vote::publish_or_remove;
-pub use vote::{agree, from_root, on_root};
+pub use vote::{agree, from_root, on_root, same_on_all};
 
 /// The program's version.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

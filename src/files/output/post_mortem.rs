@@ -10,7 +10,7 @@ use particles::{FieldInfo, FieldKind, HaloPhase, ParticleStore, Select};
 
 use super::checkpoint::row_type;
 use super::h5::{Element, RowType, Writer};
-use super::{Block, OutputError, write_atomically};
+use super::{Block, OutputError, files, write_atomically};
 
 /// Writes `STEM.txt` and `STEM.h5`; `what` describes the failure. By the rank that owns the particle.
 ///
@@ -24,7 +24,7 @@ pub fn write(
     about: &PostMortem,
 ) -> Result<(), OutputError> {
     if let Some(folder) = stem.parent() {
-        std::fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
+        files::make_folder(folder)?;
     }
     let text = text(what, case, particles, about);
     write_atomically(&stem.with_extension("txt"), text.as_bytes())?;

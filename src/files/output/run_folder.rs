@@ -2,27 +2,37 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
+
+use comm::Comm;
+use uuid::Uuid;
 
 use super::checkpoint::{self, step_of};
 use super::files::names_in;
 use super::fragments::FragmentTable;
-use super::{OutputError, Status, files, write_atomically};
+use super::listing::LISTING;
+use super::lock::{LOCK, RunLock};
+use super::{OutputError, Status, files, on_root, write_atomically};
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
-const CHECKPOINTS: &str = "checkpoints";
+pub(super) const CHECKPOINTS: &str = "checkpoints";
 const FRAGMENTS: &str = "fragments";
-pub(super) const FRAGMENTS_ENDING: &str = ".csv";
+const FRAGMENTS_ENDING: &str = ".csv";
 const GAUGES: &str = "gauges";
-pub(super) const HDF5_ENDING: &str = ".h5";
-pub(super) const TROUBLE: &str = "trouble";
+const HDF5_ENDING: &str = ".h5";
+const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
 /// The folder of a run and the names of its files.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct RunFolder {
     pub(super) path: PathBuf,
+    /// The id of the run, once it has begun there.
+    pub(super) id: Option<Uuid>,
+    /// On rank 0 of a run that holds it.
+    pub(super) lock: Option<Arc<RunLock>>,
 }
 
 impl RunFolder {
@@ -31,7 +41,64 @@ impl RunFolder {
     pub fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
+            id: None,
+            lock: None,
         }
+    }
+
+    /// The id of the run, once it has begun in the folder: results of several runs are told by it.
+    #[must_use]
+    pub fn id(&self) -> Option<Uuid> {
+        self.id
+    }
+
+    /// The folder that the run holds, where it is now. Rank 0's alone.
+    #[must_use]
+    pub fn place(&self) -> Option<Self> {
+        match &self.lock {
+            Some(lock) => lock.place().map(|path| Self {
+                path,
+                ..self.clone()
+            }),
+            None => Some(self.clone()),
+        }
+    }
+
+    /// Fails if the folder was removed or moved, or if another process has taken it: nothing is written
+    /// there then. Rank 0's alone.
+    ///
+    /// # Errors
+    /// [`OutputError::Lost`].
+    pub fn check(&self) -> Result<(), OutputError> {
+        let place = self.place();
+        let what = match &place {
+            Some(place) if place.path == self.path => return Ok(()),
+            Some(place) => format!("it was moved to {}", place.path.display()),
+            None => match self.lock.as_ref().and_then(|lock| lock.successor()) {
+                Some(who) => format!("{who} has taken it"),
+                None if self.path.exists() => format!("its file `{LOCK}` was removed"),
+                None => "it was removed".to_owned(),
+            },
+        };
+        let left = place.as_ref().unwrap_or(self).checkpoint_folders();
+        let is_own = |path: &PathBuf| checkpoint::run_of(path) == self.id;
+        Err(OutputError::Lost {
+            path: self.path.clone(),
+            what,
+            newest: left.unwrap_or_default().into_iter().find(is_own),
+        })
+    }
+
+    /// [`on_root`], if the folder is still the run's. Collective.
+    ///
+    /// # Errors
+    /// [`OutputError::Lost`], or the error of `task`; with the same text on every rank.
+    pub fn on_root(
+        &self,
+        comm: &Comm,
+        task: impl FnOnce() -> Result<(), OutputError>,
+    ) -> Result<(), OutputError> {
+        on_root(comm, || self.check().and_then(|()| task()))
     }
 
     /// Removes a file `stop` that asked an earlier run to stop: one from before `began`. One that
@@ -60,6 +127,33 @@ impl RunFolder {
         let checkpoint = checkpoint.canonicalize().ok()?;
         let path = checkpoint.parent()?.parent()?;
         Self::is_run(path).then(|| Self::at(path))
+    }
+
+    /// The run that a snapshot belongs to, if it is in the folder of one.
+    pub(super) fn of_snapshot(path: &Path) -> Option<Self> {
+        let path = path.canonicalize().ok()?;
+        let snapshots = path.ancestors().skip(1).take(2);
+        let run = snapshots
+            .filter(|path| path.ends_with(SNAPSHOTS))
+            .find_map(Path::parent)?;
+        Self::is_run(run).then(|| Self::at(run))
+    }
+
+    /// Fails if the folder holds another run than that of a file in it.
+    ///
+    /// # Errors
+    /// [`OutputError::OtherRun`].
+    pub(super) fn refuse_other(&self, file: &Path, run: Option<Uuid>) -> Result<(), OutputError> {
+        let own = self.status().ok().and_then(|status| status.run);
+        match (own, run) {
+            (Some(own), Some(run)) if own != run => Err(OutputError::OtherRun {
+                path: file.to_owned(),
+                run,
+                folder: self.path.clone(),
+                own,
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// The checkpoints, newest first.
@@ -92,6 +186,11 @@ impl RunFolder {
     /// # Errors
     /// [`OutputError::Io`].
     pub fn write_status(&self, status: &Status) -> Result<(), OutputError> {
+        let run = self.id;
+        let status = Status {
+            run,
+            ..status.clone()
+        };
         write_atomically(&self.status_file(), &status.text())
     }
 
@@ -138,7 +237,10 @@ impl RunFolder {
     /// [`OutputError::Io`], [`OutputError::Hdf5`].
     pub fn write_fragments(&self, step: u64, table: &FragmentTable) -> Result<(), OutputError> {
         let folder = self.fragment_tables();
-        fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))?;
+        for path in [self.fragment_hdf5(step), self.fragment_table(step)] {
+            self.list(&path)?;
+        }
+        files::make_folder(&folder)?;
         table.write_hdf5(&self.fragment_hdf5(step))?;
         files::write_atomically(&self.fragment_table(step), &table.text())
     }
@@ -201,16 +303,11 @@ macro_rules! paths {
             }
         )+ }
     };
-    (files $files:ident, $($(#[$doc:meta])+ $path:ident: $name:expr;)+) => {
-        paths! { $($(#[$doc])+ $path: $name;)+ }
-
-        /// The files that a run writes into its folder, beside two folders.
-        pub(super) const $files: &[&str] = &[$($name),+];
-    };
 }
 
 paths! {
-    files FILES,
+    /// The list of the files that the run has written.
+    listing: LISTING;
     /// The resolved input.
     case: "case.toml";
     /// Table of conserved sums.

@@ -54,12 +54,12 @@ pub fn add(path: &Path, name: &str, time: f64) -> Result<(), OutputError> {
 ///
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Damaged`].
-pub fn keep_until(path: &Path, time: f64) -> Result<(), OutputError> {
+pub fn keep(path: &Path, keeps: impl Fn(&Entry) -> bool) -> Result<(), OutputError> {
     if !path.exists() {
         return Ok(());
     }
     let mut files = read(path)?;
-    files.retain(|entry| entry.time <= time);
+    files.retain(keeps);
     write(path, files)
 }
 
@@ -81,7 +81,7 @@ mod tests {
         for (name, time) in [("a", 0.0), ("b", 1e-9), ("c", 2e-9), ("b", 1.5e-9)] {
             add(&path, name, time).unwrap();
         }
-        keep_until(&path, 1.5e-9).unwrap();
+        keep(&path, |entry| entry.time <= 1.5e-9).unwrap();
         let names: Vec<_> = read(&path)
             .unwrap()
             .into_iter()

@@ -114,11 +114,3 @@ impl SetAside {
         }
     }
 }
-
-/// Removes the files that restarts have set aside: the run has a newer checkpoint now.
-///
-/// # Errors
-/// [`OutputError::Io`].
-pub(super) fn forget(run: &Path) -> Result<(), OutputError> {
-    files::remove(&run.join(SET_ASIDE))
-}

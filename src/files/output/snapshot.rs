@@ -13,10 +13,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use comm::Comm;
+use uuid::Uuid;
+
 use model::{Case, Precision};
 use particles::{FieldKind, Owner, ParticleStore};
 
-use super::h5::read::PORTION;
+use super::h5::read::{PORTION, RUN};
 use super::h5::{Element, RowType, Writer};
 pub use super::quantity::{Quantity, quantities, quantities_of};
 use super::{OutputError, Rows, VERSION, commit, files, publish_or_remove, unit_of_model};
@@ -33,6 +35,8 @@ pub const EXTENSION: &str = "vtkhdf";
 pub struct Meta<'a> {
     /// The case.
     pub case: &'a Case,
+    /// Id of the run, if it is one in a folder.
+    pub run: Option<Uuid>,
     /// Step number.
     pub step: u64,
     /// Time (s).
@@ -228,6 +232,9 @@ fn write_meta(
     file.text(&format!("{group}/input"), &case.resolved)?;
     let group = "/run";
     file.group(group)?;
+    if let Some(run) = meta.run {
+        file.note(group, RUN, &run.to_string())?;
+    }
     file.number(group, "ranks", &(comm.size() as u64))?;
     file.number(group, "threads", &(meta.threads as u64))?;
     // Every rank writes the same number into metadata.

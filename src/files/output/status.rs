@@ -4,6 +4,7 @@ use std::io;
 
 use serde::{Deserialize, Serialize};
 use serde_json::ser::{Formatter, PrettyFormatter, Serializer};
+use uuid::Uuid;
 
 /// Phase of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,6 +51,9 @@ pub struct Status {
     /// Progress, as rank 0 sees it.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub outlook: Option<Outlook>,
+    /// Id of the run.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub run: Option<Uuid>,
 }
 
 impl Status {
@@ -63,6 +67,7 @@ impl Status {
             reason: None,
             exit_code: None,
             outlook: None,
+            run: None,
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use sha2::{Digest, Sha256};
 
 use comm::{Comm, Exchange};
 
@@ -55,6 +56,18 @@ pub fn on_root(
     task: impl FnOnce() -> Result<(), OutputError>,
 ) -> Result<(), OutputError> {
     agree(comm, if comm.is_root() { task() } else { Ok(()) })
+}
+
+/// Fails on every rank unless all have the text of rank 0; `what` is said of one that has another. Collective.
+///
+/// # Errors
+/// [`OutputError::OtherRank`].
+pub fn same_on_all(comm: &Comm, what: &str, text: &str) -> Result<(), OutputError> {
+    let digest = Sha256::digest(text).to_vec();
+    let mut first = digest.clone();
+    comm.broadcast(&mut first);
+    let other = || OutputError::OtherRank(format!("rank {} {what} than rank 0", comm.rank()));
+    agree(comm, (first == digest).then_some(()).ok_or_else(other))
 }
 
 /// Rank 0 publishes the temporary file that all ranks have `written` if it is whole, else removes it.

@@ -2,7 +2,7 @@
 
 use super::tables::Tables;
 use crate::output::fragments::{self, FragmentTable};
-use crate::output::{OutputError, RunFolder, Schedule, on_root};
+use crate::output::{OutputError, RunFolder, Schedule};
 use comm::Comm;
 use engine::step::Simulation;
 use engine::step::fragments::find_in;
@@ -30,7 +30,7 @@ pub fn take(
     let census = find_in(simulation, comm, &options);
     if let Some((folder, tables)) = tables {
         let (case, state) = (&simulation.case, &simulation.state);
-        on_root(comm, || {
+        folder.on_root(comm, || {
             let bodies: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
             let table = FragmentTable::new(&census, &bodies, case.dimension);
             folder.write_fragments(state.step, &table)?;

@@ -25,8 +25,7 @@ use super::watched::Watched;
 use super::{announce, census};
 use crate::output::snapshot::Plan;
 use crate::output::{
-    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, on_root, post_mortem,
-    write_json,
+    Log, OutputError, Phase, RowSchedule, Rows, RunFolder, Schedule, agree, post_mortem, write_json,
 };
 use comm::Comm;
 use engine::step::failure::{check_gain, post_mortem as post_mortem_of, remove_failed};
@@ -53,6 +52,8 @@ pub struct Driver<'a> {
     output_time: OutputTime,
     /// Post-mortems written.
     post_mortems: usize,
+    /// Step of the last default snapshot.
+    shown: Option<u64>,
 }
 
 /// Most post-mortems of a process: where particles are removed, the first ones are the most useful.
@@ -86,7 +87,7 @@ impl<'a> Driver<'a> {
         simulation.timers = Timers::default();
         let plans = Plan::all(&simulation.case, &simulation.particles)?;
         let mut tables = None;
-        on_root(comm, || {
+        folder.on_root(comm, || {
             let resume = restarted.is_some().then_some(&simulation.state);
             tables = Some(Tables::open(folder, &simulation, resume)?);
             folder.forget_stop(launch.began)
@@ -109,6 +110,7 @@ impl<'a> Driver<'a> {
             notices: Notices::default(),
             output_time: OutputTime::default(),
             post_mortems: 0,
+            shown: None,
         };
         let every = driver.simulation.case.output.checkpoint_every_wall;
         if comm.is_root() {
@@ -147,7 +149,9 @@ impl<'a> Driver<'a> {
             Err(message) => {
                 self.progress.finish();
                 self.record(comm, &format!("failed: {message}"));
-                let _ = self.tables.as_mut().map(Tables::write_records);
+                if self.folder.check().is_ok() {
+                    let _ = self.tables.as_mut().map(Tables::write_records);
+                }
                 let state = &self.simulation.state;
                 fail(comm, self.folder, &message, state.step, state.time)
             }
@@ -205,14 +209,21 @@ impl<'a> Driver<'a> {
                 self.post_mortems += 1;
                 let simulation = &self.simulation;
                 let about = post_mortem_of(simulation, id, comm.rank());
-                let written = about.map_or(Ok(()), |about| {
-                    post_mortem::write(
+                let there = self.folder.on_root(comm, || {
+                    let mut files = ["txt", "h5"]
+                        .map(|ending| stem.with_extension(ending))
+                        .into_iter();
+                    files.try_for_each(|path| self.folder.list(&path))
+                });
+                let written = there.and_then(|()| match about {
+                    None => Ok(()),
+                    Some(about) => post_mortem::write(
                         &stem,
                         &text,
                         &simulation.case,
                         &simulation.particles,
                         &about,
-                    )
+                    ),
                 });
                 text = match agree(comm, written) {
                     Ok(()) => format!("{text}; see {}.txt", stem.display()),
@@ -285,10 +296,10 @@ impl<'a> Driver<'a> {
         // A stop writes its own.
         let stops = stop::reason(self.simulation.step_control.agreed_requests).is_some();
         if checkpoint_due && !finished && !stops {
-            self.write_checkpoint(comm)?;
+            self.write_checkpoint(comm, false)?;
         }
         if snapshot_due || checkpoint_due {
-            on_root(comm, || self.write_running())?;
+            self.folder.on_root(comm, || self.write_running())?;
         }
         if let Some(line) = self.progress.show(&self.simulation.state) {
             self.record(comm, &line);
@@ -310,7 +321,7 @@ impl<'a> Driver<'a> {
         if comm.is_root() {
             self.watched.row(&self.simulation.state, &load);
         }
-        on_root(comm, || match &mut self.tables {
+        self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
             None => Ok(()),
         })?;
@@ -322,13 +333,19 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Writes the last checkpoint, `summary.json` and `status.json`; returns the exit code.
+    /// Writes the last checkpoint, the snapshot of a stop, `summary.json` and `status.json`; returns the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
         let begun = Instant::now();
         let mut output = String::new();
-        let closed = self.write_checkpoint(comm).and_then(|()| {
+        // A stopped run shows where it is.
+        let stop = phase == Phase::Stopped && self.shown != Some(self.simulation.state.step);
+        let mut closed = self.write_checkpoint(comm, stop);
+        if stop {
+            closed = closed.and_then(|()| self.write_stop(comm));
+        }
+        let closed = closed.and_then(|()| {
             self.output_time.add(begun);
             let clock = Clock {
                 wall: self.start.elapsed().as_secs_f64(),
@@ -337,7 +354,7 @@ impl<'a> Driver<'a> {
             };
             output = clock.output.line(clock.wall);
             let summary = summary(comm, &self.simulation, &clock);
-            on_root(comm, || {
+            folder.on_root(comm, || {
                 write_json(&folder.summary(), &summary)?;
                 self.write_status(phase, Some((reason, code)))
             })

@@ -6,9 +6,13 @@ use std::time::{Instant, SystemTime};
 use super::exit::{EXIT_FAILED, EXIT_INPUT};
 use super::say;
 use super::stop::Signals;
+use crate::input::InputError;
 use crate::output::h5::abandoned;
-use crate::output::{Outlook, Phase, RunFolder, Status};
-use comm::{Comm, Session, abort_job};
+use crate::output::{
+    Outlook, OutputError, Phase, RunFolder, Status, VERSION, agree, commit, same_on_all,
+};
+use comm::{Comm, Session, abort_job, library};
+use model::Case;
 
 /// Exit code of a program that panicked.
 const EXIT_PANIC: i32 = 101;
@@ -46,6 +50,13 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
         say::warn("error: MPI does not start; is this program linked to the MPI of this mpirun?");
         return EXIT_FAILED;
     };
+    if let Some((rank, message)) = strangers(comm.size(), |name| std::env::var(name).ok()) {
+        // Each process believes that it is rank 0.
+        if rank == 0 {
+            say::warn(&format!("error: {message}"));
+        }
+        return EXIT_FAILED;
+    }
     abort_on_panic(comm.rank());
     let code = work(&Launch {
         comm: &comm,
@@ -62,6 +73,29 @@ pub fn with_ranks(work: impl FnOnce(&Launch) -> u8) -> u8 {
     drop(comm);
     drop(session);
     code
+}
+
+/// The variables in which launchers tell a process the number of ranks and its own: those of Open MPI, of MPICH
+/// and its kin, and of a step of SLURM.
+const LAUNCHERS: [[&str; 2]; 3] = [
+    ["OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_RANK"],
+    ["PMI_SIZE", "PMI_RANK"],
+    ["SLURM_STEP_NUM_TASKS", "SLURM_PROCID"],
+];
+
+/// This process's rank by its launcher, and a message, if that has started more ranks than the `size` that MPI
+/// knows of: the launcher is of another MPI. The innermost launcher counts.
+fn strangers(size: usize, variable: impl Fn(&str) -> Option<String>) -> Option<(usize, String)> {
+    let number = |name| variable(name)?.parse::<usize>().ok();
+    let mut launchers = LAUNCHERS.into_iter();
+    let (name, started, rank) =
+        launchers.find_map(|[all, own]| Some((all, number(all)?, number(own)?)))?;
+    let message = format!(
+        "the launcher has started {started} ranks ({name}), and MPI ({}) knows of {size}, so that each would \
+         run the case by itself; take the mpirun of this MPI, or build the program with the launcher's",
+        library()
+    );
+    (started > size).then_some((rank, message))
 }
 
 /// Returns true if this process was started by an MPI launcher.
@@ -86,6 +120,32 @@ pub fn once(task: impl FnOnce()) {
     }
 }
 
+/// Fails on every rank unless all were started with the same options of the same program. Collective.
+///
+/// # Errors
+/// [`OutputError::OtherRank`].
+pub fn same_options(comm: &Comm, options: &impl std::fmt::Debug) -> Result<(), OutputError> {
+    let text = format!("{VERSION} {} {options:?}", commit());
+    same_on_all(
+        comm,
+        "has other options, or another version of the program,",
+        &text,
+    )
+}
+
+/// The case that all ranks have read: some read files of their own. Collective.
+///
+/// # Errors
+/// The error of a rank, the same on every rank.
+pub fn same_case(comm: &Comm, read: Result<Case, InputError>) -> Result<Case, OutputError> {
+    let read = read.map_err(|error| OutputError::OtherRank(error.to_string()));
+    let case = agree(comm, read)?;
+    let told = same_on_all(comm, "has read another case", &case.resolved);
+    // As the errors of the input are.
+    told.map_err(|error| OutputError::OtherRank(format!("error: {error}")))?;
+    Ok(case)
+}
+
 /// Prints an error of the input, once for all ranks; returns the exit code.
 pub fn warn(comm: &Comm, message: &str) -> u8 {
     if comm.is_root() {
@@ -107,7 +167,12 @@ pub fn give_up(comm: &Comm, message: &str) -> u8 {
 /// folder; returns the exit code.
 pub fn fail(comm: &Comm, folder: &RunFolder, message: &str, step: u64, time: f64) -> u8 {
     if comm.is_root() {
-        say::warn(&format!("error: {message}"));
+        let lost = folder.check().err().map(|lost| lost.to_string());
+        say::warn(&format!("error: {}", lost.as_deref().unwrap_or(message)));
+    }
+    if comm.is_root()
+        && let Some(folder) = folder.place()
+    {
         // The message above is what counts; the folder may be what failed.
         let outlook = folder.status().ok().and_then(|status| status.outlook);
         let _ = folder.write_status(&Status {
@@ -186,4 +251,37 @@ pub fn abort_on_panic(rank: usize) {
         }
         abort_job(EXIT_PANIC);
     }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_launcher_of_another_mpi_is_noticed() {
+        let told = |size, known: &[(&str, &str)]| {
+            let variable = |name: &str| {
+                let found = known.iter().find(|(known, _)| *known == name);
+                found.map(|(_, value)| (*value).to_owned())
+            };
+            strangers(size, variable)
+        };
+        assert_eq!(told(1, &[]), None);
+        let hydra = [("PMI_SIZE", "4"), ("PMI_RANK", "2")];
+        let (rank, message) = told(1, &hydra).unwrap();
+        assert!(
+            rank == 2 && message.contains("4 ranks (PMI_SIZE)"),
+            "{message}"
+        );
+        assert_eq!(told(4, &hydra), None);
+        // A batch job's own shell is no step, and mpirun counts more than the step that it runs in.
+        assert_eq!(
+            told(1, &[("SLURM_NTASKS", "4"), ("SLURM_PROCID", "0")]),
+            None
+        );
+        let step = [("SLURM_STEP_NUM_TASKS", "2"), ("SLURM_PROCID", "0")];
+        assert!(told(1, &step).is_some());
+        let within = [("OMPI_COMM_WORLD_SIZE", "1"), ("OMPI_COMM_WORLD_RANK", "0")];
+        assert_eq!(told(1, &[&step[..], &within].concat()), None);
+    }
 }

@@ -19,6 +19,8 @@ pub struct Origin {
     pub checkpoint: PathBuf,
     /// Its particles, of this rank.
     pub particles: ParticleStore,
+    /// Set if a stop wrote a snapshot after the checkpoint.
+    pub stop: bool,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,
     /// Folder of the continued run.
@@ -48,12 +50,12 @@ pub fn go_on(
     args: &CommonArgs,
     resolved_case: ResolvedCase,
     state: RunState,
-    origin: Origin,
+    mut origin: Origin,
     force: bool,
     mut warnings: Vec<String>,
 ) -> u8 {
     let comm = launch.comm;
-    let folder = &origin.folder;
+    let folder = &mut origin.folder;
     let (step, time) = (state.step, state.time);
     if state.last_reason == Reason::End {
         warnings.push(format!(
@@ -69,10 +71,15 @@ pub fn go_on(
     };
     let begun = if origin.own {
         let resolved = resolved_case.renew.then_some(&resolved[..]);
-        folder.resume(comm, resolved, step, time, &origin.passed_over)
+        folder.resume(comm, resolved, step, time, origin.stop, &origin.passed_over)
     } else {
-        RunFolder::create(comm, folder.path(), &resolved, force).map(|_| None)
+        let created = folder.create(comm, &resolved, force);
+        created.map(|kept| {
+            warnings.extend(kept);
+            None
+        })
     };
+    let folder = &origin.folder;
     let aside = match begun {
         Ok(aside) => aside,
         Err(error) => return give_up(comm, &error.to_string()),
@@ -81,7 +88,7 @@ pub fn go_on(
     match Driver::begin(launch, args, simulation, folder, checkpoint, &warnings) {
         Ok(driver) => driver.run(comm),
         Err(error) => {
-            if let Some(aside) = aside {
+            if let Some(aside) = aside.filter(|_| folder.check().is_ok()) {
                 aside.undo();
             }
             give_up(comm, &error.to_string())

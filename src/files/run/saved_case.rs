@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::io::ErrorKind;
 
+use super::launch::same_case;
 use crate::input::{self, Difference};
 use crate::output::{OutputError, RunFolder, from_root};
 use comm::Comm;
@@ -32,7 +33,11 @@ pub fn resolve(
     accept: bool,
 ) -> Result<ResolvedCase, String> {
     let name = format!("{source}: the saved input");
-    let case = input::parse(&name, saved, set).map_err(|error| error.to_string())?;
+    let parse = |name: &str, text: &str| {
+        let read = input::parse(name, text, set);
+        same_case(comm, read).map_err(|error| error.to_string())
+    };
+    let case = parse(&name, saved)?;
     let resolved = |case, renew| ResolvedCase {
         case,
         renew,
@@ -52,7 +57,7 @@ pub fn resolve(
         return Ok(resolved(case, true));
     }
     let name = folder.case().display().to_string();
-    let taken = input::parse(&name, &edited, set).map_err(|error| error.to_string())?;
+    let taken = parse(&name, &edited)?;
     let differences = input::differences(saved, &edited).unwrap_or_default();
     if !accept || !differences.iter().all(Difference::is_restartable) {
         return Err(refusal(&name, source, &differences));

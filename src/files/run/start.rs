@@ -1,7 +1,5 @@
 //! A run from its start.
 
-use std::path::Path;
-
 use super::driver::Driver;
 use super::launch::{Launch, fail, give_up};
 use super::options::CommonArgs;
@@ -10,15 +8,16 @@ use crate::preflight::{approaches, warnings};
 use engine::step::Simulation;
 use model::Case;
 
-/// Sets the case up, only then clears the folder `out` of an earlier run, and steps to the end;
+/// Sets the case up, only then clears the folder of an earlier run, and steps to the end;
 /// returns the exit code. Prints warnings about the case and `more`. Collective.
+#[must_use]
 pub fn start(
     launch: &Launch,
     args: &CommonArgs,
     case: Case,
-    out: &Path,
+    mut folder: RunFolder,
     force: bool,
-    more: impl Iterator<Item = String>,
+    more: Vec<String>,
 ) -> u8 {
     launch.start_threads(args.threads);
     let comm = launch.comm;
@@ -29,10 +28,10 @@ pub fn start(
         Ok(simulation) => simulation,
         Err(error) => return give_up(comm, &error.to_string()),
     };
-    let folder = match RunFolder::create(comm, out, &resolved, force) {
-        Ok(folder) => folder,
+    match folder.create(comm, &resolved, force) {
+        Ok(kept) => warnings.extend(kept),
         Err(error) => return give_up(comm, &error.to_string()),
-    };
+    }
     match Driver::begin(launch, args, simulation, &folder, None, &warnings) {
         Ok(driver) => driver.run(comm),
         Err(error) => fail(comm, &folder, &error.to_string(), 0, 0.0),

@@ -88,12 +88,12 @@ impl Watch {
         self.every = every;
     }
 
-    /// Notes the time that a checkpoint took. The next one is assumed to take half as much again, which
-    /// is reserved of the wall time. Returns the time to the next one if that follows from it.
+    /// Notes the time that a checkpoint took. The next one is assumed to take half as much again, and the
+    /// snapshot after it half of that: this is reserved of the wall time. Returns the time to the next one if that follows from it.
     pub fn wrote_checkpoint(&mut self, took: Duration) -> Option<Duration> {
         self.last = Instant::now();
         self.cost = took.as_secs_f64();
-        self.keep(took.mul_f64(1.5));
+        self.keep(took.mul_f64(2.25));
         let follows = matches!(self.every, Some(ClockInterval::Auto { .. }));
         self.interval().filter(|_| follows)
     }
@@ -109,7 +109,7 @@ impl Watch {
         if self.reserve.is_zero() {
             self.cost = 2.0 * took.as_secs_f64();
         }
-        self.keep(took.mul_f64(3.0));
+        self.keep(took.mul_f64(4.5));
     }
 
     fn keep(&mut self, time: Duration) {
@@ -201,7 +201,7 @@ mod tests {
         let limit = Some(Duration::from_secs(100));
         let signals = Signals(Arc::new(AtomicBool::new(false)));
         let mut watch = Watch::new(signals, None, Instant::now(), limit);
-        watch.wrote_checkpoint(Duration::from_mins(1));
+        watch.wrote_checkpoint(Duration::from_secs(40));
         assert_eq!(watch.requests(), 0);
         watch.wrote_snapshot(Duration::from_secs(40));
         assert_eq!(watch.requests(), CLOCK);

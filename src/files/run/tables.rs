@@ -10,7 +10,9 @@ use super::columns::{
 };
 use super::load::Load;
 use crate::output::gauge_records::{self, GaugeRecords};
-use crate::output::{Column, OutputError, RunFolder, Table, Value, fragments, measures};
+use crate::output::{
+    Column, OutputError, RunFolder, Table, TableExtent, Value, fragments, measures,
+};
 use engine::measure::{BodyFigures, Crossing, Findings, GaugeRow};
 use engine::step::{RunState, Simulation, measurements};
 use model::{Case, NumericalFailurePolicy, SphForm};
@@ -59,11 +61,13 @@ fn of_history(case: &Case, departs: bool) -> Vec<Column> {
 
 /// Starts a table, or continues it after the last value of a column.
 fn open(
+    folder: &RunFolder,
     path: &Path,
     columns: &[Column],
     key: &str,
     last: Option<f64>,
 ) -> Result<Table, OutputError> {
+    folder.list(path)?;
     match last {
         Some(last) => Table::resume(path, columns, key, last),
         None => Table::create(path, columns),
@@ -79,9 +83,15 @@ fn of_measures(
     if case.measure.measures.is_empty() {
         return Ok(None);
     }
-    let figures = open(&folder.measures(), &measures::of_figures(), "time", time)?;
+    let figures = open(
+        folder,
+        &folder.measures(),
+        &measures::of_figures(),
+        "time",
+        time,
+    )?;
     let others = measures::of_distributions();
-    let distributions = open(&folder.distributions(), &others, "time", time)?;
+    let distributions = open(folder, &folder.distributions(), &others, "time", time)?;
     Ok(Some([figures, distributions]))
 }
 
@@ -121,40 +131,52 @@ impl Tables {
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
         Ok(Self {
-            history: open(&folder.history(), &of_history, "step", step)?,
-            contacts: open(&folder.contacts(), &columns(CONTACTS), "time", time)?,
+            history: open(folder, &folder.history(), &of_history, "step", step)?,
+            contacts: open(folder, &folder.contacts(), &columns(CONTACTS), "time", time)?,
             loads: has_loads
-                .then(|| open(&folder.loads(), &columns(LOADS), "time", time))
+                .then(|| open(folder, &folder.loads(), &columns(LOADS), "time", time))
                 .transpose()?,
             removed: removes
-                .then(|| open(&folder.removed(), &columns(REMOVED), "time", time))
+                .then(|| open(folder, &folder.removed(), &columns(REMOVED), "time", time))
                 .transpose()?,
             departed: departs
-                .then(|| open(&folder.departed(), &of_departed, "time", time))
+                .then(|| open(folder, &folder.departed(), &of_departed, "time", time))
                 .transpose()?,
             fragments: (case.fragments.is_some())
                 .then(|| {
                     let columns = fragments::columns(case.dimension);
-                    open(&folder.fragments(), &columns, "time", time)
+                    open(folder, &folder.fragments(), &columns, "time", time)
                 })
                 .transpose()?,
             bodies: (case.measure.bodies)
-                .then(|| open(&folder.bodies(), &columns(BODIES), "time", time))
+                .then(|| open(folder, &folder.bodies(), &columns(BODIES), "time", time))
                 .transpose()?,
             measures: of_measures(folder, case, time)?,
             gauges: (simulation.gauges().any() && !many)
-                .then(|| open(&folder.gauges(), &of_gauges, "step", step))
+                .then(|| open(folder, &folder.gauges(), &of_gauges, "step", step))
                 .transpose()?,
             gauge_records: many.then(|| records(folder, case, of_gauges)),
             witnesses: (!case.measure.witnesses.is_empty())
                 .then(|| {
-                    let passed = open(&folder.witness(), &columns(WITNESS), "time", time)?;
-                    let crossings = open(&folder.crossings(), &columns(CROSSINGS), "step", step)?;
+                    let passed = open(folder, &folder.witness(), &columns(WITNESS), "time", time)?;
+                    let crossings = open(
+                        folder,
+                        &folder.crossings(),
+                        &columns(CROSSINGS),
+                        "step",
+                        step,
+                    )?;
                     Ok([passed, crossings])
                 })
                 .transpose()?,
-            performance: open(&folder.performance(), &columns(PERFORMANCE), "step", step)?,
-            ranks: open(&folder.ranks(), &columns(RANKS), "step", step)?,
+            performance: open(
+                folder,
+                &folder.performance(),
+                &columns(PERFORMANCE),
+                "step",
+                step,
+            )?,
+            ranks: open(folder, &folder.ranks(), &columns(RANKS), "step", step)?,
         })
     }
 
@@ -311,8 +333,8 @@ impl Tables {
             .map_or(Ok(()), GaugeRecords::write)
     }
 
-    /// Syncs all rows written so far to the disk.
-    pub fn sync(&mut self) -> Result<(), OutputError> {
+    /// Syncs all rows written so far to the disk, and tells what the tables hold.
+    pub fn sync(&mut self) -> Result<Vec<TableExtent>, OutputError> {
         self.write_records()?;
         let always = [
             &self.history,
@@ -329,10 +351,11 @@ impl Tables {
             &self.gauges,
         ];
         let witnesses = self.witnesses.iter().chain(&self.measures).flatten();
-        let mut all = always
+        let all = always
             .into_iter()
             .chain(some.into_iter().flatten())
             .chain(witnesses);
-        all.try_for_each(Table::sync)
+        all.map(|table| table.sync().map(|()| table.extent()))
+            .collect()
     }
 }

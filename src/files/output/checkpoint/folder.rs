@@ -6,6 +6,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::manifest::MANIFEST;
+use super::state_file::STATE;
 use crate::output::{OutputError, files};
 
 /// Ending of a checkpoint while a new one of its step takes its name.
@@ -41,7 +42,7 @@ pub fn list_damaged(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
 }
 
 /// Returns true if a name is that of a checkpoint passed over: its step, `.damaged` and maybe a number.
-pub(in crate::output) fn is_damaged(path: &Path) -> bool {
+fn is_damaged(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let step = name.rsplit_once(DAMAGED).map(|(step, _)| Path::new(step));
     step.is_some_and(|step| {
@@ -78,7 +79,7 @@ fn is_whole(path: &Path) -> Result<bool, OutputError> {
 }
 
 /// The name of the checkpoint of a step.
-pub(super) fn folder_name(step: u64) -> String {
+pub(in crate::output) fn folder_name(step: u64) -> String {
     format!("step-{step:08}")
 }
 
@@ -87,6 +88,31 @@ pub(in crate::output) fn step_of(path: &Path, ending: &str) -> Option<u64> {
     let name = path.file_name()?.to_str()?;
     let digits = name.strip_prefix("step-")?.strip_suffix(ending)?;
     digits.parse().ok()
+}
+
+/// Removes the files of a checkpoint, and its folder unless there is more in it. Links are left alone.
+pub(super) fn remove_own(path: &Path) -> Result<(), OutputError> {
+    if !is_folder(path) {
+        return Ok(());
+    }
+    // The manifest first, without which it is no checkpoint.
+    for name in [MANIFEST, STATE] {
+        for file in [path.join(name), files::partial(&path.join(name))] {
+            match fs::remove_file(&file) {
+                Err(error) if error.kind() != ErrorKind::NotFound => {
+                    return Err(OutputError::io("remove", &file)(error));
+                }
+                _ => {}
+            }
+        }
+    }
+    let _ = fs::remove_dir(path);
+    Ok(())
+}
+
+/// Returns true if a path is that of a folder, and of no link.
+fn is_folder(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|meta| meta.is_dir())
 }
 
 /// Gives a finished checkpoint its name, then removes an older one of the same step.
@@ -99,21 +125,26 @@ pub(super) fn replace(temporary: &Path, path: &Path) -> Result<(), OutputError> 
         discard(&old)?;
         fs::rename(path, &old).map_err(OutputError::io("rename", path))?;
     } else {
-        files::remove(path)?;
+        remove_own(path)?;
     }
     files::publish(temporary, path)?;
     discard(&old)
 }
 
-/// Removes a checkpoint, if it exists; if interrupted, it leaves nothing that looks like one.
+/// Removes a checkpoint, if it exists; if interrupted, it leaves nothing that looks like one. A folder with
+/// more than a checkpoint in it stays without that.
 pub(in crate::output) fn discard(path: &Path) -> Result<(), OutputError> {
     let temporary = files::partial(path);
-    files::remove(&temporary)?;
-    match fs::rename(path, &temporary) {
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-        Err(error) => Err(OutputError::io("rename", path)(error)),
-        Ok(()) => files::remove(&temporary),
+    remove_own(&temporary)?;
+    if !is_folder(path) || is_folder(&temporary) {
+        return remove_own(path);
     }
+    fs::rename(path, &temporary).map_err(OutputError::io("rename", path))?;
+    remove_own(&temporary)?;
+    if is_folder(&temporary) {
+        return fs::rename(&temporary, path).map_err(OutputError::io("rename", path));
+    }
+    Ok(())
 }
 
 /// Removes all but the newest `keep` checkpoints up to `step`, and unfinished ones left by a crash.
@@ -127,7 +158,7 @@ pub(super) fn prune(folder: &Path, step: u64, keep: usize) -> Result<(), OutputE
     for path in files::names_in(folder)? {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if name.starts_with("step-") && name.ends_with(files::PARTIAL) {
-            files::remove(&path)?;
+            remove_own(&path)?;
         }
         // Its successor has its name.
         if step_of(&path, OLD).is_some() && is_whole(&path.with_extension(""))? {

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use uuid::Uuid;
 
-use crate::output::{OutputError, files};
+use crate::output::{OutputError, ResultExtents, RunFolder, files};
 
 /// Number of the format; a reader takes its own only.
 pub const FORMAT: u64 = 1;
@@ -22,6 +23,9 @@ pub struct Manifest {
     pub version: String,
     /// Commit of that program.
     pub commit: String,
+    /// Id of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub run: Option<Uuid>,
     /// Step number.
     pub step: u64,
     /// Time (s).
@@ -36,6 +40,9 @@ pub struct Manifest {
     pub block: u64,
     /// SHA-256 of each block of the state file.
     pub sha256: Vec<String>,
+    /// The results of the run up to here.
+    #[serde(default)]
+    pub results: ResultExtents,
 }
 
 impl Manifest {
@@ -48,11 +55,22 @@ impl Manifest {
 /// Reads a checkpoint's manifest, by one process.
 ///
 /// # Errors
-/// [`OutputError::Io`], [`OutputError::Damaged`], [`OutputError::Format`].
+/// [`OutputError::Io`], [`OutputError::Damaged`], [`OutputError::Format`], [`OutputError::OtherRun`] in
+/// the folder of another run.
 pub fn manifest(folder: &Path) -> Result<Manifest, OutputError> {
     let path = folder.join(MANIFEST);
     let text = files::read_small(&path)?;
-    parse_manifest(folder, &text)
+    let manifest = parse_manifest(folder, &text)?;
+    if let Some(run) = RunFolder::of_checkpoint(folder) {
+        run.refuse_other(folder, manifest.run)?;
+    }
+    Ok(manifest)
+}
+
+/// The run that has written a checkpoint, if it says so.
+pub(in crate::output) fn run_of(folder: &Path) -> Option<Uuid> {
+    let text = files::read_small(&folder.join(MANIFEST)).ok()?;
+    parse_manifest(folder, &text).ok()?.run
 }
 
 fn parse_manifest(folder: &Path, text: &[u8]) -> Result<Manifest, OutputError> {

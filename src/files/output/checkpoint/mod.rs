@@ -11,10 +11,11 @@ mod read;
 mod state_file;
 mod write;
 
-pub(super) use folder::{DAMAGED, discard, is_damaged, step_of};
+pub(super) use folder::{DAMAGED, discard, folder_name, step_of};
 pub use folder::{list, list_broken, list_damaged};
+pub(super) use manifest::run_of;
 pub use manifest::{FORMAT, MANIFEST, Manifest, manifest};
 pub use read::{Restored, read};
-pub(super) use state_file::row_type;
 pub use state_file::{FIELDS, state_file};
+pub(super) use state_file::{STATE, row_type};
 pub use write::{Meta, write};

@@ -10,7 +10,7 @@ use crate::output::{OutputError, from_root};
 use comm::Comm;
 use particles::FieldKind;
 
-const STATE: &str = "state.h5";
+pub(in crate::output) const STATE: &str = "state.h5";
 /// Group of the fields in the state file.
 pub const FIELDS: &str = "/fields";
 

@@ -1,21 +1,24 @@
 //! Writing a checkpoint.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::folder::{folder_name, prune, replace};
+use super::folder::{folder_name, prune, remove_own, replace};
 use super::manifest::{FORMAT, MANIFEST, Manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
 use crate::output::h5::Writer;
 use crate::output::{
-    OutputError, Rows, VERSION, commit, digest, files, on_root, publish_or_remove, write_json,
+    OutputError, ResultExtents, Rows, VERSION, commit, digest, files, on_root, publish_or_remove,
+    write_json,
 };
 use comm::Comm;
 use particles::{Life, ParticleStore};
+use uuid::Uuid;
 
 /// Metadata of a checkpoint.
 #[derive(Debug, Clone, Copy)]
 pub struct Meta<'a> {
+    /// Id of the run, if it is one in a folder.
+    pub run: Option<Uuid>,
     /// Step number.
     pub step: u64,
     /// Time (s).
@@ -24,6 +27,8 @@ pub struct Meta<'a> {
     pub state: &'a str,
     /// The resolved input.
     pub input: &'a str,
+    /// The results of the run up to here, on rank 0.
+    pub results: &'a ResultExtents,
 }
 
 /// Writes a checkpoint into `folder` and then removes all but the newest `keep` up to it.
@@ -42,8 +47,8 @@ pub fn write(
     let path = folder.join(folder_name(meta.step));
     let temporary = files::partial(&path);
     on_root(comm, || {
-        files::remove(&temporary)?;
-        fs::create_dir_all(&temporary).map_err(OutputError::io("create the folder", &temporary))
+        remove_own(&temporary)?;
+        files::make_folder(&temporary)
     })?;
     let written = write_files(comm, &temporary, particles, meta, rows);
     publish_or_remove(comm, written, &temporary, || {
@@ -90,6 +95,7 @@ fn write_files(
         format: FORMAT,
         version: VERSION.to_owned(),
         commit: commit().to_owned(),
+        run: meta.run,
         step: meta.step,
         time: meta.time,
         particles: rows.block().total,
@@ -97,6 +103,7 @@ fn write_files(
         size,
         block,
         sha256: digest::of_file(comm, &state, size, block)?,
+        results: meta.results.clone(),
     };
     on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))
 }

@@ -3,7 +3,9 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::output::{Block, OutputError};
+use uuid::Uuid;
+
+use crate::output::{Block, OutputError, RunFolder};
 
 use super::explain;
 use super::gate::{self, Gate, Located};
@@ -13,6 +15,9 @@ const GRID: &str = "/VTKHDF";
 
 /// Attribute of `/whipple` that describes the portion of the model in a snapshot, if it is not all of it.
 pub const PORTION: &str = "part";
+
+/// Attribute of `/run`: the id of the run.
+pub const RUN: &str = "id";
 
 /// An error of reading a snapshot.
 #[derive(Debug, thiserror::Error)]
@@ -49,7 +54,7 @@ impl SnapshotFile {
     ///
     /// # Errors
     /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points, or
-    /// partitions that are not theirs.
+    /// partitions that are not theirs; [`OutputError::OtherRun`] if it lies in the folder of another run.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut snapshot = Self {
             gate: Gate::open(None, path)?,
@@ -64,7 +69,16 @@ impl SnapshotFile {
         snapshot.particles = points.count();
         let partitions = snapshot.gate.partitions(GRID, points.rows);
         snapshot.converted(&format!("{GRID}/NumberOfPoints"), partitions)?;
+        if let Some(folder) = RunFolder::of_snapshot(path) {
+            folder.refuse_other(path, snapshot.run())?;
+        }
         Ok(snapshot)
+    }
+
+    /// The id of the run that has written it, if it says so.
+    fn run(&self) -> Option<Uuid> {
+        let group = self.gate.group("/run").ok()?;
+        gate::note_if_any(&group, RUN).ok()??.parse().ok()
     }
 
     /// The file's path as it was opened.

@@ -3,34 +3,48 @@
 use std::time::Instant;
 
 use super::Driver;
-use crate::output::{OutputError, checkpoint, on_root};
-use crate::run::tables::Tables;
+use crate::output::{OutputError, ResultExtents, checkpoint};
 use comm::Comm;
 use engine::step::measurements;
 
 impl Driver<'_> {
-    /// Writes a checkpoint.
-    pub(super) fn write_checkpoint(&mut self, comm: &Comm) -> Result<(), OutputError> {
+    /// Writes a checkpoint; `stop` if the snapshot of a stop follows it.
+    pub(super) fn write_checkpoint(&mut self, comm: &Comm, stop: bool) -> Result<(), OutputError> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
-        on_root(comm, || self.tables.as_mut().map_or(Ok(()), Tables::sync))?;
-        let folder = self.folder.checkpoints();
+        let step = self.simulation.state.step;
+        let mut results = ResultExtents {
+            stop,
+            ..ResultExtents::default()
+        };
+        self.folder.on_root(comm, || {
+            self.folder.list_checkpoint(step)?;
+            if let Some(tables) = &mut self.tables {
+                results.tables = tables.sync()?;
+            }
+            results.files = self.folder.result_files()?;
+            Ok(())
+        })?;
+        let (folder, run) = (self.folder.checkpoints(), self.folder.id());
         measurements::join_extremes(&mut self.simulation, comm);
         let rows = &mut self.rows;
         let path = self.simulation.with_frozen(|simulation| {
             let state = &simulation.state;
             let text = serde_json::to_string(state).expect("plain numbers");
             let meta = checkpoint::Meta {
+                run,
                 step: state.step,
                 time: state.time,
                 state: &text,
                 input: &simulation.case.resolved,
+                results: &results,
             };
             let keep = simulation.case.output.checkpoints_kept;
             checkpoint::write(comm, &folder, &simulation.particles, &meta, keep, rows)
         })?;
-        on_root(comm, || self.folder.forget_set_aside())?;
+        self.folder
+            .on_root(comm, || self.folder.forget_set_aside())?;
         let took = begun.elapsed();
         self.output_time.checkpoints += took;
         let next = self.watch.wrote_checkpoint(took);

@@ -1,7 +1,7 @@
 //! Tables of measurements between steps.
 
 use super::{Driver, census};
-use crate::output::{OutputError, Schedule, on_root};
+use crate::output::{OutputError, Schedule};
 use comm::Comm;
 use engine::step::measurements;
 use model::Cadence;
@@ -26,7 +26,7 @@ impl Driver<'_> {
         if read.is_empty() {
             return Ok(());
         }
-        on_root(comm, || match &mut self.tables {
+        self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write_gauges(&self.simulation, &read),
             None => Ok(()),
         })
@@ -42,7 +42,7 @@ impl Driver<'_> {
             return Ok(());
         }
         let found = measurements::findings(&mut self.simulation, comm);
-        on_root(comm, || match &mut self.tables {
+        self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write_findings(&self.simulation, &found),
             None => Ok(()),
         })
@@ -54,7 +54,7 @@ impl Driver<'_> {
         if crossings.is_empty() {
             return Ok(());
         }
-        on_root(comm, || match &mut self.tables {
+        self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write_crossings(&self.simulation.case, &crossings),
             None => Ok(()),
         })

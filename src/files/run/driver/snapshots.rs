@@ -1,10 +1,9 @@
 //! The snapshots of a run: the default ones, and those of schedules of their own.
 
-use std::fs;
 use std::time::Instant;
 
 use super::Driver;
-use crate::output::{OutputError, RunFolder, on_root, series, snapshot};
+use crate::output::{OutputError, RunFolder, make_folder, series, snapshot};
 use comm::Comm;
 
 impl Driver<'_> {
@@ -16,11 +15,27 @@ impl Driver<'_> {
         step: Option<[f64; 2]>,
         census_due: bool,
     ) -> Result<(), OutputError> {
-        let begun = Instant::now();
         let is_due = |plan: &snapshot::Plan| step.is_none_or(|[a, b]| plan.is_due(a, b));
         let due: Vec<bool> = self.plans.iter().map(is_due).collect();
+        self.write_due(comm, &due, census_due)
+    }
+
+    /// Writes the default snapshot where a run stops.
+    pub(super) fn write_stop(&mut self, comm: &Comm) -> Result<(), OutputError> {
+        let due: Vec<bool> = (0..self.plans.len()).map(|k| k == 0).collect();
+        self.write_due(comm, &due, false)
+    }
+
+    /// Writes the snapshots of some of the plans.
+    fn write_due(
+        &mut self,
+        comm: &Comm,
+        due: &[bool],
+        census_due: bool,
+    ) -> Result<(), OutputError> {
+        let begun = Instant::now();
         self.simulation.complete_shown(comm);
-        let mut chosen = self.plans.iter().zip(&due).filter(|(_, due)| **due);
+        let mut chosen = self.plans.iter().zip(due).filter(|(_, due)| **due);
         let labels = if census_due || chosen.any(|(plan, _)| plan.shows_fragments()) {
             self.find_fragments(comm, census_due)?
         } else {
@@ -31,6 +46,7 @@ impl Driver<'_> {
             // Snapshots of portions say little about the time of a checkpoint.
             if k == 0 {
                 self.watch.wrote_snapshot(begun.elapsed());
+                self.shown = Some(self.simulation.state.step);
             }
         }
         self.output_time.snapshots += begun.elapsed();
@@ -47,12 +63,15 @@ impl Driver<'_> {
         let (plan, rows) = (&self.plans[plan], &mut self.rows);
         let name = plan.name.as_deref();
         let path = self.folder.snapshot_of(name, self.simulation.state.step);
-        on_root(comm, || {
+        self.folder.on_root(comm, || {
             let folder = self.folder.snapshots_of(name);
-            fs::create_dir_all(&folder).map_err(OutputError::io("create the folder", &folder))
+            make_folder(&folder)?;
+            self.folder.list(&path)?;
+            self.folder.list(&self.folder.series_of(name))
         })?;
         self.simulation.with_frozen(|simulation| {
             let meta = snapshot::Meta {
+                run: self.folder.id(),
                 case: &simulation.case,
                 step: simulation.state.step,
                 time: simulation.state.time,
@@ -64,7 +83,7 @@ impl Driver<'_> {
             snapshot::write(comm, &path, &simulation.particles, &meta, &format, rows)
         })?;
         let state = &self.simulation.state;
-        on_root(comm, || {
+        self.folder.on_root(comm, || {
             let file = RunFolder::snapshot_name(state.step);
             series::add(&self.folder.series_of(name), &file, state.time)
         })?;

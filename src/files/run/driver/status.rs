@@ -36,7 +36,7 @@ impl Driver<'_> {
     pub(super) fn renew_status(&mut self, comm: &Comm) {
         if comm.is_root() && self.watched.is_due() {
             // If the folder takes no files any more, required output fails and reports it.
-            let _ = self.write_running();
+            let _ = self.folder.check().and_then(|()| self.write_running());
         }
     }
 }
