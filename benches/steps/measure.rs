@@ -33,6 +33,8 @@ pub fn prepare(comm: &Comm, bench: &BenchCase, folder: &Path) -> Result<(), Stri
         results: &ResultExtents::default(),
     };
     let mut rows = Rows::default();
+    // Where this fails, the checkpoint tells of it on all ranks.
+    let _ = std::fs::create_dir_all(folder);
     checkpoint::write(comm, folder, &simulation.particles, &meta, 1, &mut rows)
         .map(drop)
         .map_err(|e| e.to_string())
