@@ -14,8 +14,8 @@ pub struct ResultExtents {
     pub tables: Vec<TableExtent>,
     /// Other files, by their names in the run's folder.
     pub files: Vec<String>,
-    /// Set if a stop writes a default snapshot after the checkpoint, which no schedule asked for: a restart from
-    /// there sets it aside.
+    /// Set if a stop has written a default snapshot of the checkpoint's step, which no schedule asked for: a restart
+    /// from there sets it aside.
     #[serde(default)]
     pub stop: bool,
 }

@@ -333,7 +333,7 @@ impl<'a> Driver<'a> {
         Ok(())
     }
 
-    /// Writes the last checkpoint, the snapshot of a stop, `summary.json` and `status.json`; returns the exit code.
+    /// Writes the snapshot of a stop, the last checkpoint, `summary.json` and `status.json`; returns the exit code.
     fn close(mut self, comm: &Comm, phase: Phase, reason: Option<&str>, code: u8) -> u8 {
         self.progress.finish();
         let folder = self.folder;
@@ -341,11 +341,9 @@ impl<'a> Driver<'a> {
         let mut output = String::new();
         // A stopped run shows where it is.
         let stop = phase == Phase::Stopped && self.shown != Some(self.simulation.state.step);
-        let mut closed = self.write_checkpoint(comm, stop);
-        if stop {
-            closed = closed.and_then(|()| self.write_stop(comm));
-        }
-        let closed = closed.and_then(|()| {
+        // Before the checkpoint, which takes the halo that a snapshot reads.
+        let shown = if stop { self.write_stop(comm) } else { Ok(()) };
+        let closed = self.write_checkpoint(comm, stop).and(shown).and_then(|()| {
             self.output_time.add(begun);
             let clock = Clock {
                 wall: self.start.elapsed().as_secs_f64(),

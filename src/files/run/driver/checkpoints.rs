@@ -8,7 +8,7 @@ use comm::Comm;
 use engine::step::measurements;
 
 impl Driver<'_> {
-    /// Writes a checkpoint; `stop` if the snapshot of a stop follows it.
+    /// Writes a checkpoint; `stop` if a stop has written a snapshot of this step.
     pub(super) fn write_checkpoint(&mut self, comm: &Comm, stop: bool) -> Result<(), OutputError> {
         let begun = Instant::now();
         self.write_crossings(comm)?;
@@ -24,6 +24,11 @@ impl Driver<'_> {
                 results.tables = tables.sync()?;
             }
             results.files = self.folder.result_files()?;
+            if stop {
+                let of_stop = self.folder.snapshot_of(None, step);
+                let is_other = |name: &String| self.folder.path().join(name) != of_stop;
+                results.files.retain(is_other);
+            }
             Ok(())
         })?;
         let (folder, run) = (self.folder.checkpoints(), self.folder.id());
