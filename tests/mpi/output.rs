@@ -197,6 +197,10 @@ fn state() -> String {
 }
 
 fn write_checkpoint(comm: &Comm, folder: &Path, total: u64, step: u64) -> Result<(), OutputError> {
+    // A checkpoint makes its own folder alone; on a full disk this one is missing too.
+    if comm.is_root() {
+        let _ = fs::create_dir_all(folder);
+    }
     let (particles, case, state) = (particles(comm, total), case(), state());
     let meta = checkpoint::Meta {
         run: None,
