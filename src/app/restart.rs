@@ -268,7 +268,7 @@ fn resume(
     if let Some(own) = own {
         let known = from_root(comm, || {
             let results = checkpoint::manifest(&loaded.checkpoint)?.results;
-            Ok((own.losses(&results), results.stop))
+            Ok((own.losses(&results), results.ends_in_stop(own, state.step)))
         });
         let losses;
         (losses, stop) = known.map_err(|error| format!("error: {error}"))?;

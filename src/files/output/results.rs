@@ -14,10 +14,17 @@ pub struct ResultExtents {
     pub tables: Vec<TableExtent>,
     /// Other files, by their names in the run's folder.
     pub files: Vec<String>,
-    /// Set if a stop has written a default snapshot of the checkpoint's step, which no schedule asked for: a restart
-    /// from there sets it aside.
-    #[serde(default)]
-    pub stop: bool,
+}
+
+impl ResultExtents {
+    /// True if a default snapshot of the checkpoint's `step` is none that it stands on: a stop wrote it, which no schedule
+    /// asked for, and a restart sets it aside. Earlier versions named no results.
+    #[must_use]
+    pub fn ends_in_stop(&self, run: &RunFolder, step: u64) -> bool {
+        let own = run.snapshot_of(None, step);
+        let mut names = self.files.iter().map(|name| run.path().join(name));
+        !self.tables.is_empty() && names.all(|name| name != own)
+    }
 }
 
 /// What a table of text held.

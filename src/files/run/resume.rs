@@ -19,7 +19,7 @@ pub struct Origin {
     pub checkpoint: PathBuf,
     /// Its particles, of this rank.
     pub particles: ParticleStore,
-    /// Set if a stop wrote a snapshot after the checkpoint.
+    /// Set if a stop wrote a snapshot of the checkpoint's step.
     pub stop: bool,
     /// Newer checkpoints of the run that cannot be read.
     pub passed_over: Vec<PathBuf>,

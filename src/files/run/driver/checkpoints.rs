@@ -14,10 +14,7 @@ impl Driver<'_> {
         self.write_crossings(comm)?;
         // Rows before this checkpoint are not written again once it is there.
         let step = self.simulation.state.step;
-        let mut results = ResultExtents {
-            stop,
-            ..ResultExtents::default()
-        };
+        let mut results = ResultExtents::default();
         self.folder.on_root(comm, || {
             self.folder.list_checkpoint(step)?;
             if let Some(tables) = &mut self.tables {
