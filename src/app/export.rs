@@ -7,6 +7,7 @@ use serde_json::json;
 use super::output_format::{OutputFormat, wrote};
 use super::which::Several;
 use desk::export::{self, Destination, ExportError, Format, Wish};
+use files::FileOpener;
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, warn};
 use model::readable::one_line;
@@ -111,7 +112,9 @@ pub fn write(args: &ExportArgs) -> Result<Vec<String>, ExportError> {
     }
     export::export(&snapshots, args.to, &wish, &destination, &mut on_written)?;
     let numbered = args.to.numbers_bodies();
-    let names = numbered.then(|| bodies(&snapshots[0])).transpose()?;
+    let names = numbered
+        .then(|| bodies(&FileOpener, &snapshots[0]))
+        .transpose()?;
     let names = names.unwrap_or_default();
     for (number, name) in (1..).zip(&names) {
         say(&format!("type {number} is {}", one_line(name)));

@@ -11,6 +11,7 @@ use super::output_format::{self, OutputFormat, wrote};
 use super::results::ResultsError;
 use super::which::Which;
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
+use files::FileOpener;
 use files::input;
 use files::output::fragments::FragmentTable;
 use files::output::{OutputError, RunFolder, Sheet, write_atomically};
@@ -164,7 +165,7 @@ fn chosen(args: &FragmentsArgs) -> Result<PathBuf, FragmentsError> {
         }
         return Ok(args.path.clone());
     }
-    let available = snapshots(RunFolder::at(&args.path).path())?;
+    let available = snapshots(&FileOpener, RunFolder::at(&args.path).path())?;
     Ok(choose(&available, &args.which.wanted()?)?.remove(0))
 }
 

@@ -8,15 +8,17 @@ use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
 use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
+use files::FileOpener;
 use files::input::{self, InputError};
 use files::output::h5::Content;
-use files::output::h5::read::{ReadError, SnapshotFile};
+use files::output::h5::read::SnapshotFile;
 use files::output::{OutputError, RunFolder, Sheet, measures, write_atomically};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{say, seconds, warn};
 use model::readable::{one_line, shown};
 use model::{Case, Measure, MeasureKind};
 use plot::{PlotError, Wanted, choose, snapshots};
+use results::{ReadError, SnapshotReader as _};
 
 /// Tell the measures of a run's snapshots: holes, craters, verdicts, debris
 ///
@@ -150,7 +152,7 @@ fn chosen(args: &MeasureArgs) -> Result<(Option<PathBuf>, Vec<PathBuf>), Measure
         return Ok((None, vec![args.path.clone()]));
     }
     let folder = RunFolder::at(&args.path);
-    let available = snapshots(folder.path())?;
+    let available = snapshots(&FileOpener, folder.path())?;
     let first = choose(&available, &Wanted::Indices(vec![0]))?.pop();
     if args.all {
         return Ok((

@@ -13,6 +13,7 @@ use serde_json::json;
 
 use super::output_format::OutputFormat;
 use super::which::Several;
+use files::FileOpener;
 use movie::MovieArgs;
 use out::{target, write_chart};
 use plot::{
@@ -307,7 +308,9 @@ fn draw_snapshots(args: &PlotArgs) -> Result<(), PlotError> {
         view: args.view.clone(),
     };
     let field = args.field.as_deref().unwrap_or("body");
-    each::draw(args, field, |sources| Pictures::new(sources, &request))
+    each::draw(args, field, |sources| {
+        Pictures::new(&FileOpener, sources, &request)
+    })
 }
 
 fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
@@ -320,7 +323,7 @@ fn draw_profile(args: &PlotArgs, field: &str) -> Result<(), PlotError> {
         view: args.view.clone(),
         exact: args.exact,
     };
-    let profiles = Profiles::new(&sources(args)?, &request)?;
+    let profiles = Profiles::new(&FileOpener, &sources(args)?, &request)?;
     let path = target(args, &format!("profile-{field}"));
     write_chart(profiles.chart(), args.width, &path)
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use files::FileOpener;
 use plot::{PlotError, Wanted, choose, parse_quantity, snapshots};
 
 /// A snapshot of a run, by time or number.
@@ -91,7 +92,7 @@ impl Several {
     /// [`PlotError`] if there are none, or if a file is to be chosen from.
     pub fn at(&self, path: &Path, default: Wanted) -> Result<Vec<PathBuf>, PlotError> {
         if path.is_dir() {
-            choose(&snapshots(path)?, &self.wanted(default)?)
+            choose(&snapshots(&FileOpener, path)?, &self.wanted(default)?)
         } else if self.any() {
             Err(PlotError::Options(
                 "--time, --index and --all choose among the snapshots of a run: give its folder",

@@ -2,6 +2,7 @@
 
 mod arrays;
 mod columns;
+pub mod connected;
 #[macro_use]
 mod declare;
 mod fields;

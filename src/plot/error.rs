@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use files::output::h5::read::ReadError;
+use results::ReadError;
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::PlotError;
-use files::output::{NewFile, OutputError};
+use results::{NewFile, OutputError};
 
 /// Writes a file; its folder is made if it lacks. What is there and no file, as a terminal or a pipe, gets
 /// the content as it is: nothing can take its name.

@@ -5,6 +5,7 @@
 
 mod source;
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -230,4 +231,53 @@ fn finds_threads_at_mpi_waits_without_a_clock_and_loops_of_others() {
     let text = "use engine::step::Simulation;";
     assert_caught("desk/report/mod.rs", text, &[1]);
     assert_caught("files/run/mod.rs", text, &[]);
+}
+
+/// Crates whose unit tests build neither MPI nor HDF5.
+const LIGHT: &str = "numerics material exact model populate particles results plot";
+
+/// All packages that a package of `Cargo.lock` depends on, with itself. Those of its tests are among them.
+fn built_with(lock: &toml::Table, package: &str) -> BTreeSet<String> {
+    let packages = lock["package"].as_array().expect("packages of Cargo.lock");
+    let mut found = BTreeSet::new();
+    let mut open = vec![package.to_owned()];
+    while let Some(name) = open.pop() {
+        let own = packages
+            .iter()
+            .filter(|own| own["name"].as_str() == Some(&name));
+        let dependencies = own.filter_map(|own| own.get("dependencies")?.as_array());
+        // `NAME`, or `NAME VERSION` where there are several.
+        let names = dependencies
+            .flatten()
+            .filter_map(|other| other.as_str()?.split(' ').next());
+        let names: Vec<String> = names.map(str::to_owned).collect();
+        if found.insert(name) {
+            open.extend(names);
+        }
+    }
+    found
+}
+
+#[test]
+fn neither_mpi_nor_hdf5_is_built_for_plots_and_below() {
+    let lock = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.lock"));
+    let lock: toml::Table = toml::from_str(&lock.expect("Cargo.lock is read")).expect("TOML");
+    let is_heavy = |name: &String| {
+        let heavy = ["mpi", "hdf5"].iter().any(|part| name.starts_with(part));
+        heavy
+            || ["engine", "comm", "files"]
+                .iter()
+                .any(|room| *name == format!("whipple-{room}"))
+    };
+    for room in LIGHT.split(' ') {
+        let built = built_with(&lock, &format!("whipple-{room}"));
+        assert!(
+            built.len() > 1,
+            "{room} is no package that depends on others"
+        );
+        let heavy: Vec<&String> = built.iter().filter(|name| is_heavy(name)).collect();
+        assert!(heavy.is_empty(), "{room} builds {heavy:?}");
+    }
+    let files = built_with(&lock, "whipple-files");
+    assert!(files.contains("mpi") && files.contains("hdf5-metno"));
 }

@@ -6,6 +6,7 @@ use plot::{Pictures, Request, Sequence, Source};
 use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, impact, plot, write};
+use files::FileOpener;
 
 /// Colours of the first three bodies.
 const FIRST: [u8; 3] = [0, 114, 178];
@@ -132,7 +133,7 @@ fn caption(snapshot: &Path, request: &Request) -> String {
         name: String::new(),
         snapshots: vec![snapshot.to_owned()],
     };
-    Pictures::new(&[source], request)
+    Pictures::new(&FileOpener, &[source], request)
         .unwrap()
         .caption()
         .to_owned()

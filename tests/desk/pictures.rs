@@ -7,6 +7,7 @@ use files::output::h5::read::SnapshotFile;
 use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{self, Case, Particles, impact, plot, write};
+use results::SnapshotReader as _;
 
 /// Colours of the first two bodies.
 const SPHERE: [u8; 3] = [0, 114, 178];

@@ -10,6 +10,7 @@ use plot::{Along, Columns, Mark, ProfileRequest, Profiles, Source, Tables};
 use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, plot, write};
+use files::FileOpener;
 
 /// Two elastic bars of 4 mm that meet at ±200 m/s, with waves at 6 km/s.
 const BARS: &str = r#"
@@ -120,7 +121,7 @@ fn stress_has_that_by_contact() {
         let values = |field: &str| {
             let mut request = request(&format!("{field}.{component}"));
             request.exact = false;
-            let profiles = Profiles::new(&[source(&run, 1)], &request).unwrap();
+            let profiles = Profiles::new(&FileOpener, &[source(&run, 1)], &request).unwrap();
             let curves = &profiles.chart().curves;
             let values = curves.iter().flat_map(|curve| &curve.points);
             values.map(|point| point[1]).collect::<Vec<_>>()
@@ -137,7 +138,7 @@ fn stress_has_that_by_contact() {
 fn dots_are_the_particles_and_the_line_the_exact_answer() {
     let folder = tempfile::tempdir().unwrap();
     let run = bars(folder.path(), "bars", BARS, &[0.5]);
-    let profiles = Profiles::new(&[source(&run, 1)], &request("stress.xx")).unwrap();
+    let profiles = Profiles::new(&FileOpener, &[source(&run, 1)], &request("stress.xx")).unwrap();
     let curves = &profiles.chart().curves;
     // Two bodies, the answer, and its name.
     assert_eq!(curves.len(), 4);
@@ -163,7 +164,7 @@ fn dots_are_the_particles_and_the_line_the_exact_answer() {
     }
     assert!((exact[0][0] - 1e-4).abs() < 1e-12);
     // K/M = 5/9 of the stress is pressure.
-    let pressure = Profiles::new(&[source(&run, 1)], &request("pressure")).unwrap();
+    let pressure = Profiles::new(&FileOpener, &[source(&run, 1)], &request("pressure")).unwrap();
     let found = jumps(&pressure.chart().curves[2].points);
     let expected = -5.0 / 9.0 * shock.stress;
     assert!((found[0][2] - expected).abs() < 1.0, "{found:?}");
@@ -181,7 +182,8 @@ fn moved_ends_and_symmetry_planes_are_known() {
     let pulse = moved(
         "velocity = { times = [0, \"0.3 us\", \"0.3 us\"], x = [\"10 m/s\", \"10 m/s\", 0] }",
     );
-    let profiles = Profiles::new(&[source(&pulse, 1)], &request("velocity.x")).unwrap();
+    let profiles =
+        Profiles::new(&FileOpener, &[source(&pulse, 1)], &request("velocity.x")).unwrap();
     // From the first particle, half a spacing from the end; the tail of the pulse is a fan.
     let points = &profiles.chart().curves[2].points;
     let found = jumps(points);
@@ -209,7 +211,7 @@ fn moved_ends_and_symmetry_planes_are_known() {
     // The left half of the model behind a symmetry plane: a wall.
     let case = format!("{BARS}\n[[symmetry]]\naxis = \"x\"\nposition = \"2 mm\"");
     let wall = bars(folder.path(), "wall", &case, &[0.1]);
-    let profiles = Profiles::new(&[source(&wall, 1)], &request("velocity.x")).unwrap();
+    let profiles = Profiles::new(&FileOpener, &[source(&wall, 1)], &request("velocity.x")).unwrap();
     let points = &profiles.chart().curves[2].points;
     assert!((points[0][0] - 2e-3).abs() < 1e-12 && points[0][1].abs() < 1e-9);
 }
@@ -221,7 +223,7 @@ fn several_times_and_runs_are_told_apart() {
     let second = bars(folder.path(), "second", BARS, &[0.25, 0.5]);
     let sources = [source(&first, 2), source(&second, 2)];
     let names = |sources: &[Source]| -> Vec<String> {
-        let profiles = Profiles::new(sources, &request("velocity.x")).unwrap();
+        let profiles = Profiles::new(&FileOpener, sources, &request("velocity.x")).unwrap();
         let named = profiles.chart().curves.iter().map(|c| c.name.clone());
         named.filter(|name| !name.is_empty()).collect()
     };
@@ -251,7 +253,7 @@ fn several_times_and_runs_are_told_apart() {
 fn plates_are_known_until_a_shock_is_released() {
     let folder = tempfile::tempdir().unwrap();
     let run = bars(folder.path(), "plates", PLATES, &[0.2, 2.0]);
-    let early = Profiles::new(&[source(&run, 1)], &request("pressure")).unwrap();
+    let early = Profiles::new(&FileOpener, &[source(&run, 1)], &request("pressure")).unwrap();
     let found = jumps(&early.chart().curves[2].points);
     assert_eq!(found.len(), 2);
     assert!((found[0][2] - 44.6e9).abs() < 0.05e9, "{found:?}");
@@ -288,7 +290,7 @@ shape.box = { lower = ["4 mm"], upper = ["8 mm"] }
 mode = "kernel"
 "#;
     let run = bars(folder.path(), "sod", case, &[1e3, 3e3]);
-    let profiles = Profiles::new(&[source(&run, 1)], &request("density")).unwrap();
+    let profiles = Profiles::new(&FileOpener, &[source(&run, 1)], &request("density")).unwrap();
     let found = jumps(&profiles.chart().curves[2].points);
     // The contact at u* = 0.92745 m/s, the shock at 1.75216 m/s.
     let expected = [[4.92745e-3, 0.42632, 0.26557], [5.75216e-3, 0.26557, 0.125]];
@@ -308,7 +310,7 @@ mode = "kernel"
         "{case}\n[[symmetry]]\naxis = \"x\"\n[[load]]\nbody = \"right\"\nabove.x = \"7.9 mm\"\nvelocity.x = 0"
     );
     let tube = bars(folder.path(), "held", &held, &[2.0e3]);
-    let profiles = Profiles::new(&[source(&tube, 1)], &request("density")).unwrap();
+    let profiles = Profiles::new(&FileOpener, &[source(&tube, 1)], &request("density")).unwrap();
     let points = &profiles.chart().curves[2].points;
     let ends = [points[0][0], points[points.len() - 2][0]];
     assert!(
@@ -397,7 +399,10 @@ fn a_row_of_a_solid_stays_one_row() {
             name: String::new(),
             snapshots: vec![path.clone()],
         };
-        Profiles::new(&[source], &request).unwrap().chart().curves[0]
+        Profiles::new(&FileOpener, &[source], &request)
+            .unwrap()
+            .chart()
+            .curves[0]
             .points
             .len()
     };
@@ -528,7 +533,7 @@ fn forces_are_drawn_for_each_pair_or_one() {
             logarithmic: [false; 2],
             dots: false,
         };
-        tables.chart().unwrap()
+        tables.chart(&FileOpener).unwrap()
     };
     let all = chart(None, "force");
     let names: Vec<&str> = all.curves.iter().map(|c| c.name.as_str()).collect();

@@ -9,6 +9,7 @@ use plot::{RadiographRequest, Radiographs, Source};
 use resvg::tiny_skia::Pixmap;
 
 use crate::fixture::{Case, Particles, SPACING, impact, plot, write};
+use files::FileOpener;
 
 /// What a pixel shows: colours of bodies are more or less bright, and mixed at edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -271,7 +272,7 @@ fn a_radiograph_holds_all_mass_and_no_more() {
             bodies: bodies.split_whitespace().map(str::to_owned).collect(),
             ..RadiographRequest::default()
         };
-        let radiographs = Radiographs::new(&source, &request).unwrap();
+        let radiographs = Radiographs::new(&FileOpener, &source, &request).unwrap();
         let size = [321, 123];
         let areal = radiographs.areal(0, size).unwrap();
         let sum: f64 = areal.iter().sum::<f64>() * radiographs.pixel_area(size);
@@ -280,6 +281,7 @@ fn a_radiograph_holds_all_mass_and_no_more() {
     // An undeformed plate of .2 mm along z has its density times its thickness.
     write(&snapshot, &case, &impact(0.0), 0.0);
     let radiographs = Radiographs::new(
+        &FileOpener,
         &source,
         &RadiographRequest {
             along: "z".to_owned(),

@@ -6,8 +6,9 @@
     reason = "small numbers"
 )]
 
-use engine::fragments::{Census, Matter, Rule, components, find_alone};
+use engine::fragments::{Census, Matter, Rule, find_alone};
 use model::{Axis, FragmentOptions, SymmetryPlane};
+use particles::connected::components;
 
 /// Particles in cubes of a spacing.
 #[derive(Default)]

@@ -14,6 +14,7 @@ use files::output::snapshot::{Portion, SnapshotFormat};
 use files::output::{Block, OutputError, ResultExtents, Rows, checkpoint, snapshot};
 use model::{Precision, Sharing};
 use particles::{FIELDS, Life, ParticleStore, rows};
+use results::SnapshotReader as _;
 
 /// None, fewer than ranks, uneven, and enough for many rows to travel.
 const TOTALS: [u64; 4] = [0, 1, 7, 1000];

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::program::{assert_same, command, end, ranks};
 use files::output::h5::read::SnapshotFile;
+use results::SnapshotReader as _;
 
 const FIRST: &str = r#"
 dimension = 3

@@ -6,8 +6,9 @@ use super::super::results::only_part;
 use super::{FragmentsError, read_case};
 use engine::fragments::{FirstSizes, Matter, belongs};
 use files::output::h5::Content;
-use files::output::h5::read::{ReadError, SnapshotFile};
+use files::output::h5::read::SnapshotFile;
 use model::{Axis, Case, FragmentOptions, Include, SymmetryPlane};
+use results::{ReadError, SnapshotReader as _};
 
 /// Particles of a snapshot, but for frozen ones.
 pub struct Loaded {

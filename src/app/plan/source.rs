@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::results::{Results, only_part};
 use comm::Comm;
+use files::FileOpener;
 use files::input;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
@@ -12,6 +13,7 @@ use files::plan::{Outlook, Particles};
 use model::Case;
 use particles::ParticleStore;
 use plot::snapshots;
+use results::SnapshotReader as _;
 
 /// The subject of the plan.
 pub struct Source {
@@ -50,7 +52,7 @@ const CHUNK: usize = 1 << 20;
 pub fn read(path: &Path, set: &[String]) -> Result<Source, String> {
     let is_case = path.join("case.toml").is_file() || path.extension().is_some_and(|e| e == "toml");
     if RunFolder::is_run(path) {
-        let available = snapshots(path).map_err(|error| format!("error: {error}"))?;
+        let available = snapshots(&FileOpener, path).map_err(|error| format!("error: {error}"))?;
         let (_, last) = available.last().expect("there is one");
         return of_snapshot(last, set);
     }

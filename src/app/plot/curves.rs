@@ -11,6 +11,7 @@ use plot::{
 
 use super::out::{named, save_text, target, write_chart};
 use super::{PlotArgs, name, sources_of, wanted};
+use files::FileOpener;
 
 /// `true` if columns of a table are drawn.
 pub fn is_table(args: &PlotArgs) -> bool {
@@ -150,12 +151,12 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
     let stem = format!("front-{body}-{}", direction.name().replace('_', "-"));
     let mut tables = Vec::new();
     for source in sources_of(args) {
-        let snapshots_of: Vec<_> = snapshots(source)?
+        let snapshots_of: Vec<_> = snapshots(&FileOpener, source)?
             .into_iter()
             .map(|snapshots_of| snapshots_of.1)
             .collect();
         let path = source.join(format!("pictures/{stem}.csv"));
-        let text = front(&snapshots_of, body, direction)?;
+        let text = front(&FileOpener, &snapshots_of, body, direction)?;
         save_text(&path, text.as_bytes())?;
         tables.push((name(source), path));
     }
@@ -227,7 +228,11 @@ fn tables_of(
 }
 
 fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError> {
-    write_chart(&tables.chart()?, args.width, &target(args, picture))
+    write_chart(
+        &tables.chart(&FileOpener)?,
+        args.width,
+        &target(args, picture),
+    )
 }
 
 /// A table of a run, or a table itself.
@@ -247,7 +252,7 @@ fn title_of(source: &Path) -> String {
     } else {
         source.parent()
     };
-    let known = folder.and_then(|folder| snapshots(folder).ok());
-    let known = known.and_then(|found| title(&found[0].1).ok());
+    let known = folder.and_then(|folder| snapshots(&FileOpener, folder).ok());
+    let known = known.and_then(|found| title(&FileOpener, &found[0].1).ok());
     known.unwrap_or_else(|| source.display().to_string())
 }

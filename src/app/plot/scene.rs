@@ -2,6 +2,7 @@
 
 use super::out::named;
 use super::{PlotArgs, curves, each};
+use files::FileOpener;
 use plot::{
     Camera, Format, NO_TABLE, PlotError, RadiographRequest, Radiographs, SceneRequest, Scenes,
 };
@@ -124,7 +125,9 @@ pub fn draw_views(args: &PlotArgs, from: &str) -> Result<(), PlotError> {
     };
     let field = args.field.as_deref().unwrap_or("body");
     let name = format!("{}-{field}", from.trim().replace(',', "_"));
-    each::draw(args, &name, |sources| Scenes::new(sources, &request))
+    each::draw(args, &name, |sources| {
+        Scenes::new(&FileOpener, sources, &request)
+    })
 }
 
 /// Draws radiographs.
@@ -140,7 +143,9 @@ pub fn draw_radiographs(args: &PlotArgs, along: &str) -> Result<(), PlotError> {
         bodies: args.scene.bodies.clone(),
     };
     let name = format!("radiograph-{along}");
-    each::draw(args, &name, |sources| Radiographs::new(sources, &request))
+    each::draw(args, &name, |sources| {
+        Radiographs::new(&FileOpener, sources, &request)
+    })
 }
 
 /// The part of the picture that is drawn.

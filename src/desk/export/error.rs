@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use files::output::OutputError;
-use files::output::h5::read::ReadError;
 use plot::PlotError;
+use results::ReadError;
 
 /// Why a snapshot could not be exported.
 #[derive(Debug, thiserror::Error)]

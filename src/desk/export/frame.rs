@@ -8,6 +8,7 @@ use super::column::{Column, Source, columns};
 use super::images::{Images, flips};
 use super::start::Start;
 use super::values::Values;
+use files::FileOpener;
 use files::output::Block;
 use files::output::h5::Content;
 use files::output::h5::RowType;
@@ -60,7 +61,7 @@ pub struct Frame {
 impl Frame {
     /// Opens a snapshot.
     pub fn open(path: &Path, wish: &Wish) -> Result<Self, ExportError> {
-        let snapshot = Snapshot::open(path)?;
+        let snapshot = Snapshot::open(&FileOpener, path)?;
         let content = Content::open(path)?;
         let images = Images::new(&snapshot.symmetry, wish.mirror);
         let mut columns = columns(&snapshot, &content, &wish.fields)?;

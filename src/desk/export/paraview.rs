@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::ExportError;
+use files::FileOpener;
 use files::output::{NewFile, RunFolder};
 use plot::{Snapshot, colour_of};
 
@@ -14,7 +15,7 @@ pub const NAME: &str = "open_in_paraview.py";
 
 /// Writes the script for a run, of which `snapshot` is one, or for a snapshot alone.
 pub fn write(run: Option<&Path>, snapshot: &Path, out: &mut NewFile) -> Result<(), ExportError> {
-    let known = Snapshot::open(snapshot)?;
+    let known = Snapshot::open(&FileOpener, snapshot)?;
     let series = run.map(|run| RunFolder::at(run).series());
     let series = series.filter(|series| series.is_file());
     let opened = series.as_deref().unwrap_or(snapshot);

@@ -6,6 +6,7 @@ use super::ExportError;
 use files::output::RunFolder;
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
+use results::SnapshotReader as _;
 
 /// The first snapshot of a run.
 #[derive(Debug)]

@@ -9,6 +9,7 @@ use super::page::{Section, snapshots, whole};
 use super::picture::{chart, image};
 use super::run_files::{Rows, Run, figure_in_words, with_unit, without_paths};
 use super::sections::verdict;
+use files::FileOpener;
 use files::output::RunFolder;
 use model::differences::{Difference, differences};
 use model::readable::short;
@@ -211,7 +212,7 @@ fn curves(runs: &[Run; 2]) -> Html {
                 columns,
                 ..Tables::default()
             };
-            tables.chart()
+            tables.chart(&FileOpener)
         });
         chart(
             drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error)),
@@ -257,7 +258,8 @@ fn pictures(runs: &[Run; 2]) -> Html {
         ..Request::default()
     };
     let drawn = sources.map(|sources| {
-        let drawn = Pictures::new(&sources, &request).and_then(|pictures| pictures.panels(None));
+        let drawn = Pictures::new(&FileOpener, &sources, &request)
+            .and_then(|pictures| pictures.panels(None));
         let drawn = drawn.map_err(|error| without_paths(&[&runs[0], &runs[1]], &error));
         image(drawn, "The last section of both runs, side by side")
     });

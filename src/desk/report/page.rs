@@ -15,6 +15,7 @@ use super::sections::{
 use super::viewer;
 use files::output::h5::read::SnapshotFile;
 use files::output::{RunFolder, VERSION};
+use results::SnapshotReader as _;
 
 const STYLE: &str = include_str!("page.css");
 

@@ -1,6 +1,6 @@
 //! Bridges: particles whose neighbours hang together by nothing else.
 
-use super::grid::Place;
+use particles::connected::Place;
 
 /// Neighbours beyond which matter is far too dense for a bridge.
 const MOST: usize = 64;

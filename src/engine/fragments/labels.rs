@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::merger::{Merger, Row};
-use super::sets::{SHARE, Set, Sets};
 use crate::domain::Halo;
 use comm::Comm;
 use numerics::collector::Collector;
+use particles::connected::{SHARE, Set, Sets};
 
 /// Mark of sets that another rank may have joined with some of its own.
 pub(super) const TOUCHES: u32 = 1 << 31;

@@ -3,12 +3,11 @@
 use rayon::prelude::*;
 
 use super::bridges::is_bridge;
-use super::grid::{Grid, Place, distance_squared, grids};
 use super::labels::{Labels, TOUCHES};
 use super::matter::{Matter, Rule, Surroundings, link_reach};
-use super::sets::Sets;
 use crate::domain::Halo;
 use comm::Comm;
+use particles::connected::{Grid, Place, Sets, distance_squared, grids};
 use particles::{Image, MirrorMask, Mirrors};
 
 /// Bytes that a search takes for each particle or image while it lasts: its place, twice, and the
@@ -261,56 +260,4 @@ impl<'a> Links<'a> {
 
 fn whole(i: usize) -> u32 {
     u32::try_from(i).unwrap_or(u32::MAX)
-}
-
-/// The sets of points that hang together: each is nearer than `reach` (m) to another of its set, and
-/// any single one may join two. As indices, the largest set first, equals in the order of their
-/// first points; points that are not finite are left out.
-///
-/// # Panics
-/// If `reach` is not positive.
-#[must_use]
-pub fn components(points: &[[f64; 3]], reach: f64) -> Vec<Vec<usize>> {
-    assert!(reach > 0.0, "a reach of {reach} m");
-    let count = points.len();
-    let ids: Vec<u64> = (0..count as u64).collect();
-    let finite = |point: &[f64; 3]| point.iter().all(|x| x.is_finite());
-    let included: Vec<bool> = points.iter().map(finite).collect();
-    let matter = Matter {
-        owned: count,
-        bodies: 1,
-        ids: &ids,
-        body: &vec![0; count],
-        position: points,
-        size: &vec![reach; count],
-        deformation: &[],
-        included: &included,
-        mass: &[],
-        velocity: &[],
-        temperature: &[],
-        plastic_strain: &[],
-    };
-    let rule = Rule {
-        link: 1.0,
-        bridges: true,
-        across_bodies: true,
-        least: 1,
-        dimension: 3,
-    };
-    let mut labels = Labels::default();
-    let nothing = Surroundings {
-        mirrors: &Mirrors::default(),
-        others: &[],
-    };
-    link((&Comm::solo(), None), &matter, nothing, &rule, &mut labels);
-    let mut found: std::collections::BTreeMap<u64, Vec<usize>> = std::collections::BTreeMap::new();
-    for i in (0..count).filter(|&i| included[i]) {
-        found
-            .entry(labels.members().of(i).label)
-            .or_default()
-            .push(i);
-    }
-    let mut found: Vec<Vec<usize>> = found.into_values().collect();
-    found.sort_by_key(|set| std::cmp::Reverse(set.len()));
-    found
 }

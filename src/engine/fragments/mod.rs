@@ -8,18 +8,16 @@
 mod bridges;
 mod census;
 mod fragment;
-mod grid;
 mod labels;
 mod links;
 mod matter;
 mod merger;
-mod sets;
 mod sums;
 
 pub use census::{Census, Share, find, find_alone};
 pub use fragment::Fragment;
 pub use labels::{Labels, Member, Members};
-pub use links::{BYTES_OF_SEARCH, components};
+pub use links::BYTES_OF_SEARCH;
 pub use matter::{FirstSizes, Matter, Rule, Surroundings, belongs, images, link_reach};
 pub use merger::{Merger, Row};
-pub use sets::{Set, Sets};
+pub use particles::connected::{Set, Sets};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::InputError;
-use super::file::content;
+use results::regular::content;
 
 /// Longest file that is read as a case (bytes): that of some 10⁵ rows of a table of time.
 const LONGEST_CASE: u64 = 16_000_000;

@@ -9,7 +9,6 @@ mod cloud;
 mod difference;
 mod document;
 mod explain;
-pub(crate) mod file;
 mod forms;
 mod formula;
 mod keys;
@@ -33,7 +32,6 @@ use source::{Diagnostic, Sources};
 pub use case_file::text;
 pub use difference::{Difference, differences};
 pub use explain::{Explained, explain};
-pub use file::{content, open_regular};
 pub use keys::{keys, restartable_keys};
 pub use schema::describe::{ABSENT, referred};
 

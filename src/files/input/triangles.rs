@@ -5,8 +5,9 @@ use std::path::Path;
 
 use sha2::{Digest, Sha256};
 
-use super::{file, obj, stl};
+use super::{obj, stl};
 use model::SurfaceFile;
+use results::regular;
 
 /// Longest file that is read as a surface (bytes): 20 million triangles of a binary STL file.
 const LONGEST: u64 = 1_000_000_000;
@@ -31,7 +32,7 @@ impl Format {
 /// The fault, as the end of "cannot take the surface `file`: …"; of
 /// [`io::ErrorKind::NotFound`] if there is no such file.
 pub fn read(path: &Path, format: Format) -> io::Result<(Vec<[[f64; 3]; 3]>, SurfaceFile)> {
-    let bytes = file::content(path, LONGEST, "a surface")?;
+    let bytes = regular::content(path, LONGEST, "a surface")?;
     let digest = Sha256::digest(&bytes);
     let file = SurfaceFile {
         path: absolute(path),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use csv::ByteRecord;
 use sha2::{Digest, Sha256};
 
-use super::results::TableExtent;
+use super::extents::TableExtent;
 use super::{OutputError, sheet, write_atomically};
 
 /// One value of a row.

@@ -11,9 +11,9 @@ use exact::hugoniot::Medium;
 use exact::plates::{self, Plate};
 use exact::riemann::{Gas, Riemann};
 use exact::{Profile, Sample, finite_strain};
-use files::input;
 use material::{Eos, Material, Strength};
 use model::{Body, Case, ContactMode, Motion, Shape, VelocityLoad};
+use results::Opener;
 
 /// The cases with an answer.
 const KNOWN: &str = "an exact answer is known for one-dimensional runs of linear elastic bars \
@@ -63,11 +63,11 @@ struct Segment<'a> {
 
 impl Exact {
     /// The answer for the run that wrote a snapshot, from the `case.toml` of its folder.
-    pub fn of_run(snapshot: &Path) -> Result<Self, PlotError> {
+    pub fn of_run(opener: &dyn Opener, snapshot: &Path) -> Result<Self, PlotError> {
         let folder = snapshot.parent().and_then(Path::parent);
         let path = folder.unwrap_or(Path::new(".")).join("case.toml");
         let unknown = |reason: String| PlotError::Exact { reason };
-        let case = input::load(&path, &[]).map_err(|e| unknown(e.to_string()))?;
+        let case = opener.case(&path).map_err(unknown)?;
         Self::of(&case).map_err(|reason| unknown(format!("{reason}; {KNOWN}")))
     }
 

@@ -15,6 +15,7 @@ use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 use crate::units;
 use model::Axis;
+use results::Opener;
 
 /// About how many of many curves have a name in the legend.
 const NAMED: usize = 10;
@@ -101,10 +102,14 @@ impl Profiles {
     ///
     /// # Errors
     /// Any [`PlotError`] but those of writing.
-    pub fn new(sources: &[Source], request: &ProfileRequest) -> Result<Self, PlotError> {
+    pub fn new(
+        opener: &dyn Opener,
+        sources: &[Source],
+        request: &ProfileRequest,
+    ) -> Result<Self, PlotError> {
         let path = sources.iter().find_map(|source| source.snapshots.first());
         let path = path.ok_or(PlotError::Options("no snapshot to draw"))?;
-        let first = Snapshot::open(path)?;
+        let first = Snapshot::open(opener, path)?;
         let Drawn::Field(field) = Drawn::find(&first, &request.field)? else {
             return Err(PlotError::Options(
                 "a profile shows a field, as in --profile pressure",
@@ -114,7 +119,11 @@ impl Profiles {
         let mut taken = Vec::new();
         for source in sources {
             for path in &source.snapshots {
-                taken.push(line.take(&Snapshot::open(path)?, &request.field, &source.name)?);
+                taken.push(line.take(
+                    &Snapshot::open(opener, path)?,
+                    &request.field,
+                    &source.name,
+                )?);
             }
         }
         if taken.iter().all(|profile| profile.dots.is_empty()) {
@@ -139,7 +148,7 @@ impl Profiles {
             let count = sources[0].snapshots.len();
             chart
                 .curves
-                .extend(exact_curves(path, request, &taken[..count])?);
+                .extend(exact_curves(opener, path, request, &taken[..count])?);
         }
         Ok(Self { chart })
     }
@@ -329,11 +338,12 @@ fn curves(taken: &[Taken], sources: usize) -> Vec<Curve> {
 /// The exact answer at the times of some profiles: of several, each in a darker shade of its
 /// profile.
 fn exact_curves(
+    opener: &dyn Opener,
     path: &Path,
     request: &ProfileRequest,
     taken: &[Taken],
 ) -> Result<Vec<Curve>, PlotError> {
-    let answer = Exact::of_run(path)?;
+    let answer = Exact::of_run(opener, path)?;
     let mut curves = Vec::new();
     let times = units::times(&taken.iter().map(|t| t.time).collect::<Vec<_>>());
     for (k, profile) in taken.iter().enumerate() {

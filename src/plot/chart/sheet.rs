@@ -1,7 +1,7 @@
 //! A chart as a table.
 
 use super::curves::{Chart, Curve, Quantity};
-use files::output::Sheet;
+use results::Sheet;
 
 /// The column that names curves.
 pub const CURVE: &str = "curve";

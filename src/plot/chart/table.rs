@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::PlotError;
-use files::input;
-use files::output::{RunFolder, Sheet, gauge_records};
+use results::regular;
+use results::{Opener, Sheet};
 
 /// Longest file that is read as a table (bytes).
 const LONGEST: u64 = 4_000_000_000;
@@ -26,7 +26,7 @@ impl Table {
     /// # Errors
     /// [`PlotError::Table`] if the file cannot be read or is no table.
     pub fn read(path: &Path) -> Result<Self, PlotError> {
-        let content = input::content(path, LONGEST, "a table");
+        let content = regular::content(path, LONGEST, "a table");
         let content = content.map_err(|e| wrong(path, e.to_string()))?;
         let text = String::from_utf8(content).map_err(|e| wrong(path, e.to_string()))?;
         Self::parse(&text).map_err(|reason| wrong(path, reason))
@@ -37,12 +37,11 @@ impl Table {
     ///
     /// # Errors
     /// As [`Self::read`], and for gauges that it does not know.
-    pub fn read_of(path: &Path, gauges: &[String]) -> Result<Self, PlotError> {
+    pub fn read_of(opener: &dyn Opener, path: &Path, gauges: &[String]) -> Result<Self, PlotError> {
         let failed = |reason: String| wrong(path, reason);
         let only = (!gauges.is_empty()).then_some(gauges);
         let mut table = if path.is_dir() {
-            let folder = RunFolder::at(path.parent().unwrap_or(path));
-            let read = gauge_records::sheet(&folder, only);
+            let read = opener.gauges(path.parent().unwrap_or(path), only);
             let sheet = read.map_err(|e| failed(e.to_string()))?;
             let sheet = sheet.ok_or_else(|| failed("no gauges have read into it".to_owned()))?;
             Self::of(sheet)

@@ -9,6 +9,7 @@ use crate::PlotError;
 use crate::colour;
 use crate::header::Mark;
 use crate::units;
+use results::Opener;
 
 /// The columns of both axes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -100,14 +101,14 @@ impl Tables {
     ///
     /// # Errors
     /// [`PlotError::Table`] if a table or a column cannot be read, or has no such pair.
-    pub fn chart(&self) -> Result<Chart, PlotError> {
+    pub fn chart(&self, opener: &dyn Opener) -> Result<Chart, PlotError> {
         let mut chart = Chart {
             title: self.title.clone(),
             ..Chart::default()
         };
         for (k, (name, path)) in self.tables.iter().enumerate() {
             let failed = |reason: String| wrong(path, reason);
-            let table = Table::read_of(path, &self.gauges)?;
+            let table = Table::read_of(opener, path, &self.gauges)?;
             let drawn: Vec<&str> = self.drawn().collect();
             let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if k == 0 {

@@ -23,6 +23,7 @@ use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 use crate::style::default_width;
 use model::Axis;
+use results::Opener;
 
 /// A request for pictures, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -65,12 +66,16 @@ impl Pictures {
     /// # Errors
     /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
     /// cannot be understood, or a plane that misses all particles.
-    pub fn new(sources: &[Source], request: &Request) -> Result<Self, PlotError> {
+    pub fn new(
+        opener: &dyn Opener,
+        sources: &[Source],
+        request: &Request,
+    ) -> Result<Self, PlotError> {
         let paths: Vec<&PathBuf> = sources.iter().flat_map(|s| &s.snapshots).collect();
         let path = paths
             .first()
             .ok_or(PlotError::Options("no snapshot to draw"))?;
-        let first = Snapshot::open(path)?;
+        let first = Snapshot::open(opener, path)?;
         let thickness = request.thickness.as_deref().map(thickness).transpose()?;
         let cut = Cut {
             plane: match request.section.as_deref() {
@@ -88,7 +93,7 @@ impl Pictures {
         let mut sections = Vec::with_capacity(paths.len());
         let mut bodies = Bodies::default();
         for path in &paths {
-            let snapshot = Snapshot::open(path)?;
+            let snapshot = Snapshot::open(opener, path)?;
             let numbers = bodies.add(&snapshot);
             sections.push(cut.take(&snapshot, &numbers)?);
         }

@@ -11,8 +11,8 @@ use super::pictures::Pictures;
 use super::section::{DrawnAs, Section};
 use super::view::View;
 use crate::snapshots::field::Drawn;
-use files::output::{Sheet, table_line};
 use model::Axis;
+use results::{Sheet, table_line};
 
 /// Rows of a grid that are found at once.
 const BAND: usize = 64;

@@ -26,6 +26,7 @@ use crate::snapshots::source::Source;
 use crate::style::{Style, whole};
 use crate::units::parse_span;
 use model::Axis;
+use results::Opener;
 
 /// Unit of the drawn quantity.
 const UNIT: &str = "kg/m^2";
@@ -51,6 +52,7 @@ pub struct RadiographRequest {
 /// Radiographs of some snapshots.
 #[derive(Debug)]
 pub struct Radiographs {
+    opener: &'static dyn Opener,
     titles: Titles,
     selection: Selection,
     camera: Camera,
@@ -70,12 +72,16 @@ impl Radiographs {
     /// # Errors
     /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
     /// cannot be understood, a flat model, or nothing to see.
-    pub fn new(sources: &[Source], request: &RadiographRequest) -> Result<Self, PlotError> {
+    pub fn new(
+        opener: &'static dyn Opener,
+        sources: &[Source],
+        request: &RadiographRequest,
+    ) -> Result<Self, PlotError> {
         let mut paths = sources.iter().flat_map(|s| &s.snapshots);
         let path = paths
             .next()
             .ok_or(PlotError::Options("no snapshot to draw"))?;
-        let first = Snapshot::open(path)?;
+        let first = Snapshot::open(opener, path)?;
         let along = Axis::named(&request.along)
             .ok_or_else(|| PlotError::quantity(&request.along, "x, y or z"))?;
         let camera = Camera::parse(match along {
@@ -92,7 +98,14 @@ impl Radiographs {
             mirror: request.mirror,
         };
         let mut survey = Survey::new(REACH);
-        survey.look(sources, &mut selection, &camera, &Cuts::default(), FLAT)?;
+        survey.look(
+            opener,
+            sources,
+            &mut selection,
+            &camera,
+            &Cuts::default(),
+            FLAT,
+        )?;
         let view = survey
             .view()
             .ok_or(PlotError::Options("there is no matter to draw"))?;
@@ -106,6 +119,7 @@ impl Radiographs {
             position: 0.0,
         };
         Ok(Self {
+            opener,
             titles: Titles::new(first.title.clone(), sources, &survey.times),
             selection,
             camera,
@@ -125,7 +139,7 @@ impl Radiographs {
     /// masses.
     fn masses(&self, k: usize, size: [usize; 2], view: View) -> Result<Masses, PlotError> {
         let (path, numbers) = &self.snapshots[k];
-        let snapshot = Snapshot::open(path)?;
+        let snapshot = Snapshot::open(self.opener, path)?;
         let mirrors = self.selection.mirrors(&snapshot);
         let mut masses = Masses::new(size, view);
         for rows in snapshot.chunks() {

@@ -24,6 +24,7 @@ use crate::snapshots::grains::Selection;
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 use crate::style::whole;
+use results::Opener;
 
 /// A request for views, as typed.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -53,6 +54,7 @@ const FLAT: &str =
 /// Views of some snapshots.
 #[derive(Debug)]
 pub struct Scenes {
+    opener: &'static dyn Opener,
     titles: Titles,
     selection: Selection,
     camera: Camera,
@@ -74,12 +76,16 @@ impl Scenes {
     /// # Errors
     /// Any [`PlotError`] but those of writing: a snapshot that cannot be read, a request that
     /// cannot be understood, a flat model, or nothing to see.
-    pub fn new(sources: &[Source], request: &SceneRequest) -> Result<Self, PlotError> {
+    pub fn new(
+        opener: &'static dyn Opener,
+        sources: &[Source],
+        request: &SceneRequest,
+    ) -> Result<Self, PlotError> {
         let mut paths = sources.iter().flat_map(|s| &s.snapshots);
         let path = paths
             .next()
             .ok_or(PlotError::Options("no snapshot to draw"))?;
-        let first = Snapshot::open(path)?;
+        let first = Snapshot::open(opener, path)?;
         let camera = Camera::parse(&request.from)?;
         let cuts = if request.cuts.is_empty() && request.mirror {
             Cuts::open(&camera, &first)
@@ -96,11 +102,12 @@ impl Scenes {
             mirror: request.mirror,
         };
         let mut survey = Survey::new(RADIUS);
-        survey.look(sources, &mut selection, &camera, &cuts, FLAT)?;
+        survey.look(opener, sources, &mut selection, &camera, &cuts, FLAT)?;
         let view = survey.view().ok_or(PlotError::Options(
             "there is nothing to see: choose another --cut, or other --bodies",
         ))?;
         Ok(Self {
+            opener,
             titles: Titles::new(first.title.clone(), sources, &survey.times),
             transparent: selection.bodies.numbers(&request.transparent)?,
             caption: caption(&camera, &cuts, &selection, &first),
@@ -187,7 +194,7 @@ impl Sequence for Scenes {
             depth: self.depth,
         };
         let raster = |(path, numbers): &Numbered| {
-            let snapshot = Snapshot::open(path)?;
+            let snapshot = Snapshot::open(self.opener, path)?;
             stage.draw(&snapshot, numbers, size, |seen| self.colour(seen))
         };
         let rasters: Vec<Vec<Rgb>> = snapshots.iter().map(raster).collect::<Result<_, _>>()?;

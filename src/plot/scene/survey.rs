@@ -15,6 +15,7 @@ use crate::snapshots::grains::{Grain, PORTION, Selection};
 use crate::snapshots::sample::Sampled;
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
+use results::Opener;
 
 /// The extent and values of some snapshots.
 #[derive(Debug)]
@@ -60,6 +61,7 @@ impl Survey {
     /// [`PlotError::Body`] if none has a body that is wanted.
     pub fn look(
         &mut self,
+        opener: &dyn Opener,
         sources: &[Source],
         selection: &mut Selection,
         camera: &Camera,
@@ -67,7 +69,7 @@ impl Survey {
         flat: &'static str,
     ) -> Result<(), PlotError> {
         for path in sources.iter().flat_map(|source| &source.snapshots) {
-            let snapshot = Snapshot::open(path)?;
+            let snapshot = Snapshot::open(opener, path)?;
             if snapshot.dimension < 3 {
                 return Err(PlotError::Options(flat));
             }

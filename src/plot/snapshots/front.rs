@@ -6,8 +6,9 @@ use std::path::PathBuf;
 use super::field::Drawn;
 use super::snapshot::Snapshot;
 use crate::PlotError;
-use engine::fragments::components;
 use model::Axis;
+use particles::connected::components;
+use results::Opener;
 
 /// A direction along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,12 +62,17 @@ impl Direction {
 ///
 /// # Errors
 /// [`PlotError::Body`] if there is no such body, [`PlotError::Read`] if a snapshot cannot be read.
-pub fn front(snapshots: &[PathBuf], body: &str, direction: Direction) -> Result<String, PlotError> {
+pub fn front(
+    opener: &dyn Opener,
+    snapshots: &[PathBuf],
+    body: &str,
+    direction: Direction,
+) -> Result<String, PlotError> {
     let mut table = format!("# units: s,m\ntime,front_{}\n", direction.name());
     let sign = if direction.backwards { -1.0 } else { 1.0 };
     let axis = direction.axis.index();
     for path in snapshots {
-        let snapshot = Snapshot::open(path)?;
+        let snapshot = Snapshot::open(opener, path)?;
         let Some(wanted) = snapshot.bodies.iter().position(|name| name == body) else {
             return Err(PlotError::Body {
                 name: body.to_owned(),

@@ -6,8 +6,8 @@ use std::path::Path;
 use super::extent::{Extent, Mover};
 use super::shape::Shape;
 use crate::PlotError;
-use files::output::h5::read::SnapshotFile;
 use model::{Axis, SymmetryPlane};
+use results::{Opener, SnapshotReader};
 
 /// Particles read at a time, so that a large snapshot is never whole in memory.
 const CHUNK: usize = 1 << 20;
@@ -16,7 +16,7 @@ const CHUNK: usize = 1 << 20;
 #[derive(Debug)]
 pub struct Snapshot {
     /// Its file.
-    pub file: SnapshotFile,
+    pub file: Box<dyn SnapshotReader>,
     /// Time (s).
     pub time: f64,
     /// Title of the case.
@@ -57,20 +57,20 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`PlotError::Read`] if it cannot be read, [`PlotError::Snapshot`] if what it says makes no sense.
-    pub fn open(path: &Path) -> Result<Self, PlotError> {
-        let file = SnapshotFile::open(path)?;
+    pub fn open(opener: &dyn Opener, path: &Path) -> Result<Self, PlotError> {
+        let file = opener.snapshot(path)?;
         let damaged = |reason: String| PlotError::Snapshot {
             path: path.to_owned(),
             reason,
         };
         let title = file.attribute("/whipple", "title")?;
-        let bodies: Vec<String> = json(&file, "bodies")?;
-        let spacings: Vec<f64> = json(&file, "spacings")?;
+        let bodies: Vec<String> = json(file.as_ref(), "bodies")?;
+        let spacings: Vec<f64> = json(file.as_ref(), "spacings")?;
         let coarsest: Vec<f64> =
-            json(&file, "coarsest_spacings").unwrap_or_else(|_| spacings.clone());
-        let rigid: Vec<bool> = json(&file, "rigid")?;
-        let planes: Vec<(String, f64)> = json(&file, "symmetry")?;
-        let densities: Option<Vec<f64>> = json(&file, "densities").ok();
+            json(file.as_ref(), "coarsest_spacings").unwrap_or_else(|_| spacings.clone());
+        let rigid: Vec<bool> = json(file.as_ref(), "rigid")?;
+        let planes: Vec<(String, f64)> = json(file.as_ref(), "symmetry")?;
+        let densities: Option<Vec<f64>> = json(file.as_ref(), "densities").ok();
         for (count, what) in [
             (spacings.len(), "spacings"),
             (coarsest.len(), "coarsest spacings"),
@@ -362,20 +362,23 @@ fn symmetry(planes: Vec<(String, f64)>) -> Result<Vec<SymmetryPlane>, String> {
 ///
 /// # Errors
 /// [`PlotError::Read`] if the snapshot cannot be read.
-pub fn title(path: &Path) -> Result<String, PlotError> {
-    Ok(Snapshot::open(path)?.title)
+pub fn title(opener: &dyn Opener, path: &Path) -> Result<String, PlotError> {
+    Ok(Snapshot::open(opener, path)?.title)
 }
 
 /// Names of the bodies of a snapshot, in the order of their numbers.
 ///
 /// # Errors
 /// [`PlotError::Read`] if the snapshot cannot be read.
-pub fn bodies(path: &Path) -> Result<Vec<String>, PlotError> {
-    Ok(Snapshot::open(path)?.bodies)
+pub fn bodies(opener: &dyn Opener, path: &Path) -> Result<Vec<String>, PlotError> {
+    Ok(Snapshot::open(opener, path)?.bodies)
 }
 
 /// A JSON attribute of the group `/whipple`.
-fn json<T: serde::de::DeserializeOwned>(file: &SnapshotFile, name: &str) -> Result<T, PlotError> {
+fn json<T: serde::de::DeserializeOwned>(
+    file: &dyn SnapshotReader,
+    name: &str,
+) -> Result<T, PlotError> {
     let text = file.attribute("/whipple", name)?;
     serde_json::from_str(&text).map_err(|e| PlotError::Snapshot {
         path: file.path().to_owned(),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::PlotError;
-use files::output::h5::read::SnapshotFile;
+use results::Opener;
 
 /// The choice of snapshots of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ pub struct Source {
 ///
 /// # Errors
 /// [`PlotError::NoSnapshots`] if there are none, [`PlotError::Read`] if one cannot be read.
-pub fn snapshots(folder: &Path) -> Result<Vec<(f64, PathBuf)>, PlotError> {
+pub fn snapshots(opener: &dyn Opener, folder: &Path) -> Result<Vec<(f64, PathBuf)>, PlotError> {
     let inner = folder.join("snapshots");
     let folder = if inner.is_dir() { &inner } else { folder };
     let none = || PlotError::NoSnapshots {
@@ -45,7 +45,7 @@ pub fn snapshots(folder: &Path) -> Result<Vec<(f64, PathBuf)>, PlotError> {
         // A name with a dot in front is a file that is still being written.
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
         if !hidden && path.extension().is_some_and(|e| e == "vtkhdf") {
-            times.push((SnapshotFile::open(&path)?.time()?, path));
+            times.push((opener.snapshot(&path)?.time()?, path));
         }
     }
     if times.is_empty() {

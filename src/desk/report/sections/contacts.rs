@@ -3,6 +3,7 @@
 use crate::report::html::{Html, note, table_of_texts};
 use crate::report::picture::chart;
 use crate::report::run_files::{Rows, Run, with_unit};
+use files::FileOpener;
 use plot::{Columns, Tables};
 
 /// Draws the forces, and lists the last state of each pair.
@@ -40,7 +41,9 @@ pub fn render(run: &Run) -> Result<Html, String> {
         },
         ..Tables::default()
     };
-    let drawn = drawn.chart().map_err(|error| run.without_path(&error));
+    let drawn = drawn
+        .chart(&FileOpener)
+        .map_err(|error| run.without_path(&error));
     let drawn = chart(drawn, "Contact force of each pair of bodies over time");
     Ok(drawn.then(table).then(note(
         "Peak and closest pair are of all steps. Forces act on the first body of a pair; on the second \

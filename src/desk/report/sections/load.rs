@@ -3,6 +3,7 @@
 use crate::report::html::{Html, bar, missing, note, or_reason, table};
 use crate::report::picture::chart;
 use crate::report::run_files::{Rows, Run};
+use files::FileOpener;
 use plot::{Columns, History, Tables};
 
 /// Tells load and time.
@@ -25,7 +26,9 @@ fn balance(run: &Run) -> Result<Html, String> {
             label: Some("busiest rank over the mean".to_owned()),
             ..Tables::default()
         };
-        let drawn = drawn.chart().map_err(|error| run.without_path(&error));
+        let drawn = drawn
+            .chart(&FileOpener)
+            .map_err(|error| run.without_path(&error));
         page.push(chart(
             drawn,
             "Load of the busiest rank over the mean of all, by step",

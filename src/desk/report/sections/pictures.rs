@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::report::html::Html;
 use crate::report::picture::image;
 use crate::report::run_files::Run;
+use files::FileOpener;
 use plot::{Pictures, PlotError, Request, Sequence, Source, Wanted, choose};
 
 /// Draws the sections of snapshots in the order of time: by body, and by pressure where it is known.
@@ -58,5 +59,5 @@ fn pictures(
         mirror: true,
         ..Request::default()
     };
-    Pictures::new(&[source], &request)
+    Pictures::new(&FileOpener, &[source], &request)
 }

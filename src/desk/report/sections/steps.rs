@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use crate::report::html::{Html, note, swatch, table};
 use crate::report::picture::chart;
 use crate::report::run_files::{Rows, Run, with_unit};
+use files::FileOpener;
 use plot::{Columns, Tables, colour_of, hex};
 
 /// Draws the steps over time, with what chose them.
@@ -25,7 +26,9 @@ pub fn render(run: &Run) -> Result<Html, String> {
         label: Some("time step".to_owned()),
         ..Tables::default()
     };
-    let drawn = drawn.chart().map_err(|error| run.without_path(&error));
+    let drawn = drawn
+        .chart(&FileOpener)
+        .map_err(|error| run.without_path(&error));
     // The first row is of the state before any step.
     let taken: Vec<(f64, f64, &str)> = (1..rows.len())
         .map(|row| {

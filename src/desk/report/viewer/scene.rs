@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::chosen::{Chosen, spread};
 use super::frames::{Ends, Frame, Kept};
+use files::FileOpener;
 use model::readable::Readable;
 use model::{Axis, SymmetryPlane};
 use plot::{Drawn, PlotError, Rgb, Scale, Snapshot, colour_of, decimals, hex};
@@ -89,7 +90,7 @@ impl Scene {
         frames: Option<usize>,
         room: usize,
     ) -> Result<Self, PlotError> {
-        let first = Snapshot::open(&snapshots[0].1)?;
+        let first = Snapshot::open(&FileOpener, &snapshots[0].1)?;
         let drawn = drawn(&first)?;
         let rows = most_particles(snapshots)?;
         let most = particles.min(MOST_PARTICLES);
@@ -97,7 +98,14 @@ impl Scene {
         // A guess on the safe side: a place takes six bytes that hardly pack, and base64 a third more.
         let each = (4 * (6 + drawn.len()) / 3 + 1) * most.min(rows);
         let wanted = frames.unwrap_or((room / each.max(1)).clamp(2, MOST_FRAMES));
-        let read = |k: usize| Kept::read(&Snapshot::open(&snapshots[k].1)?, &drawn, chosen, most);
+        let read = |k: usize| {
+            Kept::read(
+                &Snapshot::open(&FileOpener, &snapshots[k].1)?,
+                &drawn,
+                chosen,
+                most,
+            )
+        };
         let all: Result<Vec<Kept>, _> = spread(snapshots.len(), wanted)
             .into_iter()
             .map(read)
@@ -206,7 +214,7 @@ fn drawn(first: &Snapshot) -> Result<Vec<Drawn>, PlotError> {
 
 /// Rows of the snapshot with the most particles, frozen ones and stress points among them.
 fn most_particles(snapshots: &[(f64, PathBuf)]) -> Result<usize, PlotError> {
-    let count = |path: &Path| Ok(Snapshot::open(path)?.file.particles());
+    let count = |path: &Path| Ok(Snapshot::open(&FileOpener, path)?.file.particles());
     let counts: Result<Vec<usize>, PlotError> =
         snapshots.iter().map(|(_, path)| count(path)).collect();
     Ok(counts?.into_iter().max().unwrap_or(0))

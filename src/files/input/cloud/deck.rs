@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use ::sha2::{Digest, Sha256};
 
+use super::LONGEST;
 use super::budget::Budget;
 use super::text::{self, shortened};
-use super::{LONGEST, file};
+use results::regular;
 
 /// Files that include each other, one in the other, at most.
 const DEEPEST: usize = 16;
@@ -74,7 +75,7 @@ impl Deck {
         if self.depth == DEEPEST || !self.included.insert(path.clone()) {
             return Err("it is included twice, or too deep".to_owned());
         }
-        let content = file::content(&path, LONGEST - self.length.min(LONGEST), "a deck");
+        let content = regular::content(&path, LONGEST - self.length.min(LONGEST), "a deck");
         let content = content.map_err(|cause| cause.to_string())?;
         self.length += content.len() as u64;
         self.budget.add(content.len());

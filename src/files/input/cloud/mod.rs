@@ -28,10 +28,10 @@ use std::path::{Path, PathBuf};
 
 use ::sha2::{Digest, Sha256};
 
-use super::file;
 use super::schema::{FormatName, TakeName};
 use deck::Deck;
 use model::SurfaceFile;
+use results::regular;
 
 pub use part::Wanted;
 pub use table::{Columns, Table};
@@ -152,7 +152,7 @@ pub fn read(
     request: &Request,
 ) -> Result<(Table, SurfaceFile), Fault> {
     let mut sha256 = digest(path)?;
-    let text = || file::content(path, LONGEST, "a file of particles").map_err(Fault::from);
+    let text = || regular::content(path, LONGEST, "a file of particles").map_err(Fault::from);
     let mut deck = |read: fn(&str, &mut Deck) -> Result<mesh::Mesh, Fault>| {
         let content = text()?;
         let mut deck = Deck::of(path, &content);
@@ -179,7 +179,7 @@ pub fn read(
 
 /// The SHA-256 of a regular file of any length, in hexadecimal digits.
 fn digest(path: &Path) -> io::Result<String> {
-    let (mut file, _) = file::open_regular(path)?;
+    let (mut file, _) = regular::open_regular(path)?;
     let mut digest = Sha256::new();
     let mut piece = vec![0; 1 << 20];
     loop {

@@ -6,8 +6,9 @@ use std::path::Path;
 use super::names::from_vtk;
 use super::part::{PartName, choose};
 use super::{Fault, Request, Table};
-use crate::output::h5::read::{ReadError, SnapshotFile};
+use crate::output::h5::read::SnapshotFile;
 use model::Quantity;
+use results::{ReadError, SnapshotReader as _};
 
 /// Particles read at a time.
 const CHUNK: usize = 1 << 20;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use uuid::Uuid;
 
-use crate::output::{Block, OutputError, RunFolder};
+use crate::output::{Block, RunFolder};
+use results::{ReadError, SnapshotReader};
 
 use super::explain;
 use super::gate::{self, Gate, Located};
@@ -18,28 +19,6 @@ pub const PORTION: &str = "part";
 
 /// Attribute of `/run`: the id of the run.
 pub const RUN: &str = "id";
-
-/// An error of reading a snapshot.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    /// The file is missing, is not HDF5 or is damaged.
-    #[error(transparent)]
-    Open(#[from] OutputError),
-    /// HDF5, but without something that every snapshot has.
-    #[error(
-        "{} is not a whipple snapshot: {what} cannot be read ({reason}); give a file of the run's \
-         snapshots folder",
-        path.display()
-    )]
-    Layout {
-        /// The file.
-        path: PathBuf,
-        /// The missing object or attribute.
-        what: String,
-        /// The message of HDF5.
-        reason: String,
-    },
-}
 
 /// An open snapshot. Rows are particles in the order of their ids.
 #[derive(Debug)]
@@ -81,112 +60,6 @@ impl SnapshotFile {
         gate::note_if_any(&group, RUN).ok()??.parse().ok()
     }
 
-    /// The file's path as it was opened.
-    #[must_use]
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Number of particles n.
-    #[must_use]
-    pub fn particles(&self) -> usize {
-        self.particles
-    }
-
-    /// Time of the snapshot (s).
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the file has no time.
-    pub fn time(&self) -> Result<f64, ReadError> {
-        let name = "/VTKHDF/FieldData/TimeValue";
-        let first = self.read(name, 0..1)?.first().copied();
-        first.ok_or_else(|| self.layout(name, &"it is empty"))
-    }
-
-    /// Positions of a range of particles, `[rows][3]` (m).
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the rows cannot be read.
-    pub fn points(&self, rows: Range<usize>) -> Result<Vec<[f64; 3]>, ReadError> {
-        let flat = self.read("/VTKHDF/Points", rows)?;
-        let (points, _) = flat.as_chunks::<3>();
-        Ok(points.to_vec())
-    }
-
-    /// Names of the particle fields, in alphabetical order.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the file has no particle data.
-    pub fn names(&self) -> Result<Vec<String>, ReadError> {
-        let name = "/VTKHDF/PointData";
-        self.converted(name, self.gate.members(name))
-    }
-
-    /// Numbers for each particle in a field: 1, 3 (x, y, z) or 6 (xx, yy, zz, xy, yz, xz).
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if there is no such field or its shape fits no particles.
-    pub fn components(&self, field: &str) -> Result<usize, ReadError> {
-        let name = field_path(field);
-        let rows = self.rows(&name)?;
-        if rows.count() == self.particles {
-            return Ok(rows.row.components);
-        }
-        let (found, n) = (rows.count(), self.particles);
-        let reason = format!("its {found} rows do not fit {n} particles");
-        Err(self.layout(&name, &reason))
-    }
-
-    /// A field of a range of particles, row after row, `[rows × components]` in the field's unit;
-    /// integer fields are converted.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if there is no such field or the rows cannot be read.
-    pub fn values(&self, field: &str, rows: Range<usize>) -> Result<Vec<f64>, ReadError> {
-        self.read(&field_path(field), rows)
-    }
-
-    /// One component of a field for a range of particles, `[rows]` in the field's unit.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if there is no such field or component.
-    pub fn scalar(
-        &self,
-        field: &str,
-        component: usize,
-        rows: Range<usize>,
-    ) -> Result<Vec<f64>, ReadError> {
-        let width = self.components(field)?;
-        if component >= width {
-            let reason = format!("it has {width} components, {component} was asked for");
-            return Err(self.layout(&field_path(field), &reason));
-        }
-        let mut values = self.values(field, rows)?;
-        if width > 1 {
-            values = values.into_iter().skip(component).step_by(width).collect();
-        }
-        Ok(values)
-    }
-
-    /// A string attribute of a particle field, such as `unit`.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the field or the attribute is missing or no string.
-    pub fn field_attribute(&self, field: &str, name: &str) -> Result<String, ReadError> {
-        let path = field_path(field);
-        let rows = self.rows(&path)?;
-        self.converted(&format!("attribute {name} of {path}"), rows.note(name))
-    }
-
-    /// A string attribute of a group, such as `title` of `/whipple`.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the group or the attribute is missing or no string.
-    pub fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
-        let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
-        self.converted(&format!("attribute {name} of {group}"), text)
-    }
-
     /// The portion of the model that it holds, if it does not hold all particles.
     ///
     /// # Errors
@@ -198,15 +71,6 @@ impl SnapshotFile {
             .group(group)
             .and_then(|g| gate::note_if_any(&g, PORTION));
         self.converted(&format!("attribute {PORTION} of {group}"), portion)
-    }
-
-    /// A whole number that is an attribute of a group, such as `dimension` of `/whipple`.
-    ///
-    /// # Errors
-    /// [`ReadError::Layout`] if the group or the attribute is missing or not a number.
-    pub fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
-        let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
-        self.converted(&format!("attribute {name} of {group}"), number)
     }
 
     /// Some rows of a dataset, value after value.
@@ -235,6 +99,82 @@ impl SnapshotFile {
             what: what.to_owned(),
             reason: reason.to_string(),
         }
+    }
+}
+
+impl SnapshotReader for SnapshotFile {
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn particles(&self) -> usize {
+        self.particles
+    }
+
+    fn time(&self) -> Result<f64, ReadError> {
+        let name = "/VTKHDF/FieldData/TimeValue";
+        let first = self.read(name, 0..1)?.first().copied();
+        first.ok_or_else(|| self.layout(name, &"it is empty"))
+    }
+
+    fn points(&self, rows: Range<usize>) -> Result<Vec<[f64; 3]>, ReadError> {
+        let flat = self.read("/VTKHDF/Points", rows)?;
+        let (points, _) = flat.as_chunks::<3>();
+        Ok(points.to_vec())
+    }
+
+    fn names(&self) -> Result<Vec<String>, ReadError> {
+        let name = "/VTKHDF/PointData";
+        self.converted(name, self.gate.members(name))
+    }
+
+    fn components(&self, field: &str) -> Result<usize, ReadError> {
+        let name = field_path(field);
+        let rows = self.rows(&name)?;
+        if rows.count() == self.particles {
+            return Ok(rows.row.components);
+        }
+        let (found, n) = (rows.count(), self.particles);
+        let reason = format!("its {found} rows do not fit {n} particles");
+        Err(self.layout(&name, &reason))
+    }
+
+    fn values(&self, field: &str, rows: Range<usize>) -> Result<Vec<f64>, ReadError> {
+        self.read(&field_path(field), rows)
+    }
+
+    fn scalar(
+        &self,
+        field: &str,
+        component: usize,
+        rows: Range<usize>,
+    ) -> Result<Vec<f64>, ReadError> {
+        let width = self.components(field)?;
+        if component >= width {
+            let reason = format!("it has {width} components, {component} was asked for");
+            return Err(self.layout(&field_path(field), &reason));
+        }
+        let mut values = self.values(field, rows)?;
+        if width > 1 {
+            values = values.into_iter().skip(component).step_by(width).collect();
+        }
+        Ok(values)
+    }
+
+    fn field_attribute(&self, field: &str, name: &str) -> Result<String, ReadError> {
+        let path = field_path(field);
+        let rows = self.rows(&path)?;
+        self.converted(&format!("attribute {name} of {path}"), rows.note(name))
+    }
+
+    fn attribute(&self, group: &str, name: &str) -> Result<String, ReadError> {
+        let text = self.gate.group(group).and_then(|g| gate::note(&g, name));
+        self.converted(&format!("attribute {name} of {group}"), text)
+    }
+
+    fn number(&self, group: &str, name: &str) -> Result<u64, ReadError> {
+        let number = self.gate.group(group).and_then(|g| gate::number(&g, name));
+        self.converted(&format!("attribute {name} of {group}"), number)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use rayon::prelude::*;
 
 /// Elements that a task looks at.
-pub(super) const SHARE: usize = 4096;
+pub const SHARE: usize = 4096;
 
 /// Disjoint sets of the elements `0..n`, joined by any threads in any order: which elements are
 /// together does not depend on it, and the root of a set is its smallest element.
@@ -70,6 +70,7 @@ impl Sets {
     }
 
     /// The smallest element known of the set of `i`; all of it once nobody joins any more.
+    #[inline]
     #[must_use]
     pub fn root(&self, mut i: u32) -> u32 {
         loop {
@@ -87,6 +88,7 @@ impl Sets {
     }
 
     /// Joins the sets of two elements.
+    #[inline]
     pub fn join(&self, a: u32, b: u32) {
         let (mut a, mut b) = (self.root(a), self.root(b));
         while a != b {
@@ -101,6 +103,7 @@ impl Sets {
     }
 
     /// Adds marks to the set of an element.
+    #[inline]
     pub fn mark(&self, i: u32, marks: u32) {
         if self.marks[i as usize].load(Relaxed) & marks != marks {
             self.marks[i as usize].fetch_or(marks, Relaxed);
@@ -156,7 +159,7 @@ impl Sets {
     }
 
     /// Gives a set, by its root, the label and the marks that it has over all ranks.
-    pub(super) fn rename(&mut self, root: u32, label: u64, marks: u32) {
+    pub fn rename(&mut self, root: u32, label: u64, marks: u32) {
         *self.labels[root as usize].get_mut() = label;
         *self.marks[root as usize].get_mut() = marks;
     }

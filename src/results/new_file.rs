@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::OutputError;
-use super::files::{partial, publish};
+use crate::OutputError;
+use crate::files::{partial, publish};
 
 /// Bytes that are kept together before they go to the system.
 const BUFFER: usize = 1 << 20;

@@ -15,7 +15,7 @@ pub fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
 }
 
 /// Records as lines.
-pub(super) fn lines<T: AsRef<[u8]>>(
+pub fn lines<T: AsRef<[u8]>>(
     records: impl IntoIterator<Item = impl IntoIterator<Item = T>>,
 ) -> Vec<u8> {
     let mut lines = Vec::new();
@@ -32,14 +32,14 @@ pub(super) fn lines<T: AsRef<[u8]>>(
 }
 
 /// The line of units that a table begins with.
-pub(super) fn units_line<T: AsRef<[u8]>>(units: impl IntoIterator<Item = T>) -> Vec<u8> {
+pub fn units_line<T: AsRef<[u8]>>(units: impl IntoIterator<Item = T>) -> Vec<u8> {
     let mut text = format!("{UNITS} ").into_bytes();
     text.extend(line(units));
     text
 }
 
 /// Reads records that all have as many values as the header.
-pub(super) fn rows(content: &[u8]) -> Reader<&[u8]> {
+pub fn rows(content: &[u8]) -> Reader<&[u8]> {
     ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)

@@ -6,9 +6,9 @@
 
 use rayon::prelude::*;
 
+use crate::Image;
 use numerics::ellipsoid::square;
 use numerics::vector::{minus, norm};
-use particles::Image;
 
 /// Place of a particle or of an image of it.
 #[derive(Debug, Clone, Copy)]

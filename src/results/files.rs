@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::OutputError;
-use crate::input::file;
+use crate::{OutputError, regular};
 
 /// Ending of unfinished files and folders.
-pub(super) const PARTIAL: &str = ".partial";
+pub const PARTIAL: &str = ".partial";
 
 /// The name under which a file or folder is written before it is renamed.
-pub(super) fn partial(path: &Path) -> PathBuf {
+#[must_use]
+pub fn partial(path: &Path) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(PARTIAL);
     name.into()
@@ -53,8 +53,8 @@ const SMALL: u64 = 64 << 20;
 ///
 /// # Errors
 /// [`OutputError::Io`].
-pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64, OutputError> {
-    let opened = file::open_regular(path);
+pub fn length_of_regular(action: &'static str, path: &Path) -> Result<u64, OutputError> {
+    let opened = regular::open_regular(path);
     opened.map_or_else(
         |e| Err(OutputError::io(action, path)(e)),
         |(_, length)| Ok(length),
@@ -66,7 +66,7 @@ pub(super) fn length_of_regular(action: &'static str, path: &Path) -> Result<u64
 /// # Errors
 /// [`OutputError::Io`].
 pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
-    let content = file::open_regular(path).and_then(|(mut file, _)| {
+    let content = regular::open_regular(path).and_then(|(mut file, _)| {
         let mut content = Vec::new();
         file.read_to_end(&mut content).map(|_| content)
     });
@@ -78,7 +78,7 @@ pub fn read_regular(path: &Path) -> Result<Vec<u8>, OutputError> {
 /// # Errors
 /// [`OutputError::Io`], [`OutputError::Damaged`] if it is no regular file or not small.
 pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
-    file::content(path, SMALL, "such a file").map_err(|error| match error.kind() {
+    regular::content(path, SMALL, "such a file").map_err(|error| match error.kind() {
         ErrorKind::InvalidInput | ErrorKind::FileTooLarge => {
             OutputError::damaged(path, error.to_string())
         }
@@ -88,7 +88,10 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
 
 /// Makes a folder within one that exists. No path is made anew by its name: what was removed or moved
 /// stays so.
-pub(crate) fn make_folder(path: &Path) -> Result<(), OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     match fs::create_dir(path) {
         Err(error) if error.kind() != ErrorKind::AlreadyExists => {
             Err(OutputError::io("create the folder", path)(error))
@@ -98,13 +101,19 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), OutputError> {
 }
 
 /// Gives a finished file or folder its name, and syncs its folder.
-pub(super) fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn publish(temporary: &Path, path: &Path) -> Result<(), OutputError> {
     fs::rename(temporary, path).map_err(OutputError::io("rename to", path))?;
     sync_folder(path.parent().unwrap_or(Path::new(".")))
 }
 
 /// Syncs a folder, so that renames and removals survive a power cut.
-pub(super) fn sync_folder(folder: &Path) -> Result<(), OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn sync_folder(folder: &Path) -> Result<(), OutputError> {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
     } else {
@@ -116,14 +125,20 @@ pub(super) fn sync_folder(folder: &Path) -> Result<(), OutputError> {
 }
 
 /// Syncs a file; also returns the errors of writes that the system had deferred.
-pub(super) fn sync_file(path: &Path) -> Result<(), OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn sync_file(path: &Path) -> Result<(), OutputError> {
     File::open(path)
         .and_then(|file| file.sync_all())
         .map_err(OutputError::io("sync", path))
 }
 
 /// Removes a file or a whole folder if it exists.
-pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn remove(path: &Path) -> Result<(), OutputError> {
     let result = match fs::symlink_metadata(path) {
         Ok(meta) if meta.is_dir() => fs::remove_dir_all(path),
         Ok(_) => fs::remove_file(path),
@@ -134,7 +149,10 @@ pub(super) fn remove(path: &Path) -> Result<(), OutputError> {
 }
 
 /// Paths of all files and folders in a folder; none if there is no such folder.
-pub(super) fn names_in(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn names_in(folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         entries => entries.map_err(OutputError::io("list", folder))?,

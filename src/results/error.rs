@@ -98,7 +98,7 @@ pub enum OutputError {
         "the checkpoint {} was written by whipple {by}, and this is {}: {what}; restart it with the \
          program that wrote it",
         path.display(),
-        super::VERSION
+        crate::VERSION
     )]
     OtherVersion {
         /// The checkpoint or its file.
@@ -223,4 +223,26 @@ impl OutputError {
 /// Each on a line of its own, with a line end before the first.
 fn lines(reasons: &[String]) -> String {
     [&[String::new()], reasons].concat().join("\n  ")
+}
+
+/// An error of reading a snapshot.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file is missing, is not HDF5 or is damaged.
+    #[error(transparent)]
+    Open(#[from] OutputError),
+    /// HDF5, but without something that every snapshot has.
+    #[error(
+        "{} is not a whipple snapshot: {what} cannot be read ({reason}); give a file of the run's \
+         snapshots folder",
+        path.display()
+    )]
+    Layout {
+        /// The file.
+        path: PathBuf,
+        /// The missing object or attribute.
+        what: String,
+        /// The message of HDF5.
+        reason: String,
+    },
 }
