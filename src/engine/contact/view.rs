@@ -70,6 +70,17 @@ impl<'a> ContactView<'a> {
         }
     }
 
+    /// Factor of the stiffness of a particle, see [`gas`](super::gas).
+    #[inline(always)]
+    pub(super) fn stiffening(&self, particle: &ContactParticle) -> f64 {
+        self.table.stiffening(self.particles, particle.slot)
+    }
+
+    /// Its relative rate (1/s).
+    pub(super) fn stiffening_rate(&self, particle: &ContactParticle) -> f64 {
+        self.table.stiffening_rate(self.particles, particle.slot)
+    }
+
     /// The normal of the surface between two particles: that of both, from their bodies' corrected
     /// gradients, into the first one's body; none inside bodies.
     pub(super) fn normal(&self, i: &ContactParticle, j: &ContactParticle) -> Option<[f64; 3]> {

@@ -118,6 +118,24 @@ pub fn stiffness(case: &Case, messages: &mut Vec<String>) {
     }
 }
 
+/// Gases without any pressure by which rigid surfaces could push them.
+pub fn soft_gases(case: &Case, messages: &mut Vec<String>) {
+    for (index, body) in case.bodies.iter().enumerate() {
+        let is_held = case
+            .loads
+            .surfaces
+            .iter()
+            .any(|surface| surface.bodies[index]);
+        if is_held && body.rigid.is_none() && case.contact_modulus(body) <= 0.0 {
+            messages.push(format!(
+                "`{}` is a gas without pressure, and rigid surfaces push with a gas's modulus at its reference pressure or \
+                 that of the start: it passes through them; give its `eos.ideal_gas` a `reference_pressure`",
+                body.name
+            ));
+        }
+    }
+}
+
 fn seconds(time: f64) -> String {
     shown(time, "s")
 }

@@ -132,7 +132,7 @@ fn may_tear(bodies: &[Body], materials: &[Material]) -> bool {
     materials.clone().all(|m| m.p_wave_modulus() > 0.0) && materials.any(|m| m.failure.has_memory())
 }
 
-/// Contact scales with a modulus, which a gas has only at a reference pressure.
+/// Contact scales with a modulus, which a gas has only at a pressure: of its reference state or of the start.
 fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
         let material = &case.materials[body.material];
@@ -143,7 +143,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagn
                 case.contact_between(a, b).class().is_some()
             }
         };
-        if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
+        if case.contact_modulus(body) == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(
                 "the gas `{}` has no modulus that contact could scale with",
                 material.name
