@@ -137,7 +137,7 @@ fn nohs_wall() {
     }
 }
 
-/// A gas at 80 MPa drives a plate of steel: Lagrange's gun. Until the rarefaction has come back from the closed end, at
+/// A gas at 80 `MPa` drives a plate of steel: Lagrange's gun. Until the rarefaction has come back from the closed end, at
 /// some 2 L/c, the plate of mass m per area has the velocity
 /// `u = 2 c/(γ − 1) [1 − (1 + (γ + 1) p t/(2 m c))^(−(γ − 1)/(γ + 1))]`. The bound is a spacing of the gas in the path
 /// that the plate has gone.

@@ -54,6 +54,12 @@ impl Gas {
     }
 }
 
+/// Factor of particle `i`; one in a case without gas in contact.
+#[inline(always)]
+pub(super) fn stiffening(particles: &ParticleStore, i: usize) -> f64 {
+    particles.contact_stiffening.get(i).copied().unwrap_or(1.0)
+}
+
 /// Sets the factors of owned particles, given the gases by body.
 pub(super) fn stiffen(gases: &[Option<Gas>], particles: &mut ParticleStore) {
     let owned = particles.owned();

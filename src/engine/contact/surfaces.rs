@@ -10,7 +10,7 @@ use friction::SurfaceFriction;
 
 use super::force::ContactStress;
 use super::friction::Law;
-use super::gas::Gas;
+use super::gas::{Gas, stiffening};
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use model::{Body, Case, RigidSurface};
@@ -339,7 +339,7 @@ impl View<'_> {
         if separation >= penalty.h.max(penalty.reach) || self.particles.mass[i] == 0.0 {
             return None;
         }
-        let stiffness = penalty.stiffness * self.table.stiffening(self.particles, i) * volume;
+        let stiffness = penalty.stiffness * stiffening(self.particles, i) * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
         let energy = 0.5 * stiffness * escape.depth2;
         let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));

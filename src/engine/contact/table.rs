@@ -203,14 +203,7 @@ impl ContactTable {
         self.owners.contains(Owner::GAS_CONTACT)
     }
 
-    /// Factor of the stiffness of contact of a particle, see [`gas`](super::gas).
-    #[inline(always)]
-    pub(super) fn stiffening(&self, particles: &ParticleStore, i: usize) -> f64 {
-        let factor = particles.contact_stiffening.get(i);
-        factor.copied().unwrap_or(1.0)
-    }
-
-    /// Its relative rate (1/s).
+    /// Relative rate of the factor of the stiffness of a particle (1/s), see [`gas`](super::gas).
     pub(super) fn stiffening_rate(&self, particles: &ParticleStore, i: usize) -> f64 {
         if !self.has_gas() {
             return 0.0;

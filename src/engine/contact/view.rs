@@ -1,6 +1,7 @@
 //! Inputs of the contact sums: particles as they meet, and their separations.
 
 use super::ContactTable;
+use super::gas::stiffening;
 use numerics::vector::square;
 use particles::neighbours::{Lists, MotionRecord};
 use particles::{Image, MirrorMask, Mirrors, ParticleStore};
@@ -73,7 +74,7 @@ impl<'a> ContactView<'a> {
     /// Factor of the stiffness of a particle, see [`gas`](super::gas).
     #[inline(always)]
     pub(super) fn stiffening(&self, particle: &ContactParticle) -> f64 {
-        self.table.stiffening(self.particles, particle.slot)
+        stiffening(self.particles, particle.slot)
     }
 
     /// Its relative rate (1/s).
