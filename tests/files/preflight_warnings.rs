@@ -207,7 +207,7 @@ fn a_shock_through_what_cannot_fail_is_told() {
     assert_told(&["body.bar.velocity=[0, \"-500 m/s\"]"], &[]);
 }
 
-/// The pressure is that of both Hugoniots: an acoustic one would be 52 GPa.
+/// The pressure is that of both Hugoniots: an acoustic one would be 52 `GPa`.
 #[test]
 fn the_shock_that_is_named_is_that_of_the_hugoniots() {
     let fast = "body.bar.velocity=[0, \"-7 km/s\"]";
