@@ -9,6 +9,7 @@ pub mod info;
 mod limit;
 mod materials;
 mod measure;
+pub mod memory;
 mod new;
 mod output_format;
 mod plan;
@@ -108,6 +109,13 @@ pub fn main(commit: &'static str) -> ExitCode {
     };
     if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
         end_with_the_pipe();
+    }
+    // The others start their own threads.
+    if !matches!(
+        cli.command,
+        Command::Run(_) | Command::Restart(_) | Command::Bench(_)
+    ) {
+        launch::bound_threads();
     }
     let code = match cli.command {
         Command::New(args) => new::run(&args),
