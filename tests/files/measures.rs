@@ -389,6 +389,49 @@ fn a_target_has_its_crater() {
     });
     let mut simulation = start(case);
     deform(&mut simulation, 1, |[x, y, z]| {
+/// A crater of a ball is told against the ball's own surface, not against the plane before it.
+#[test]
+fn a_crater_of_a_ball_does_not_count_its_curvature() {
+    let radius = 24.0;
+    let ball = |centre: f64, radius: f64| Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, centre * D),
+        radius: radius * D,
+    };
+    let bodies = vec![
+        body("grain", ball(6.0, 4.0), D, Vec3::new(0.0, 0.0, -3000.0)),
+        body("moon", ball(-radius, radius), D, Vec3::zeros()),
+    ];
+    let mut case = case(3, bodies, 1.0);
+    let slab = Slab::new(&case, 1, [0.0, 0.0, 1.0], Include::All);
+    case.measure.measures = measured(MeasureKind::Target(slab));
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, |[x, y, z]| {
+        let r = (x * x + y * y + z * z).sqrt();
+        if r < 8.0 {
+            Some(([2.0 * x, 2.0 * y, 40.0 - z], [100.0 * x, 100.0 * y, 500.0]))
+        } else {
+            (r < 10.0).then_some(([x, y, z], STILL))
+        }
+    });
+    // What two balls share.
+    let drop = 64.0 / (2.0 * radius);
+    let cap = |radius: f64, height: f64| PI * height * height * (radius - height / 3.0);
+    let volume = (cap(8.0, 8.0 - drop) + cap(radius, drop)) * D.powi(3);
+    for _ in 0..2 {
+        let found = measure(&mut simulation);
+        is(&found, "crater_depth", 8.0 * D);
+        is(
+            &found,
+            "crater_diameter",
+            2.0 * (64.0 - drop * drop).sqrt() * D,
+        );
+        is(&found, "crater_volume", volume);
+        is(&found, "rim_height", 0.0);
+        let (turn, shift) = moved();
+        move_all(&mut simulation, &turn, shift);
+    }
+}
+
         let r = (x * x + y * y + z * z).sqrt();
         if r < 8.0 {
             Some(([2.0 * x, 2.0 * y, 40.0 - z], [100.0 * x, 100.0 * y, 500.0]))
