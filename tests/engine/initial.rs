@@ -283,7 +283,10 @@ fn errors_are_of_the_largest_motion_so_far() {
         assert!(s.state.initial.kinetic_energy < 1e-12 * energy);
         assert_eq!(worst.energy_error, worst.energy_deviation / energy);
         for a in 0..3 {
-            assert_eq!(worst.momentum_error[a], worst.momentum_deviation[a] / motion);
+            assert_eq!(
+                worst.momentum_error[a],
+                worst.momentum_deviation[a] / motion
+            );
         }
         assert!((0.0..1e-10).contains(&worst.energy_error) && worst.energy_error > 0.0);
         assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
