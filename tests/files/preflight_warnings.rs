@@ -61,6 +61,20 @@ fn bodies_that_meet_without_contact_are_told() {
 }
 
 #[test]
+fn an_end_before_the_last_arrival_is_told() {
+    let wall = "[[body]]\nname = \"wall\"\nmaterial = \"metal\"\n\
+                shape.box = { lower = [\"-2 mm\", \"-3 mm\"], upper = [\"3 mm\", \"-2 mm\"] }\n";
+    let said = |end: &str| {
+        let set = [format!("run.end_time={end}")];
+        let case = parse("bar", &format!("{BAR}\n{wall}"), &set).unwrap();
+        warnings(&case, &approaches(&case))
+    };
+    let late = "`run.end_time` is 20 us, before `bar` can reach `wall` at 40 us: a verdict on what is struck comes later";
+    assert_eq!(said("20us"), [late]);
+    assert_eq!(said("50us"), [""; 0]);
+}
+
+#[test]
 fn an_end_before_anything_meets_is_told() {
     assert_told(
         &["run.end_time=5us"],

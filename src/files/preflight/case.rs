@@ -24,6 +24,18 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             ));
         }
     }
+    let late = approaches
+        .iter()
+        .filter(|pair| pair.time.is_finite() && pair.time >= end);
+    let last = late.max_by(|a, b| a.time.total_cmp(&b.time));
+    if let Some(pair) = last.filter(|_| approaches.iter().any(|pair| pair.time < end)) {
+        let [a, b] = names(pair);
+        messages.push(format!(
+            "`run.end_time` is {}, before `{a}` can reach `{b}` at {}: a verdict on what is struck comes later",
+            seconds(end),
+            seconds(pair.time)
+        ));
+    }
     // Bodies that are driven, fall or meet their mirror images move without an impact.
     let acting = case.load_names().count() - case.loads.absorbers.len();
     let driven = acting > 0;

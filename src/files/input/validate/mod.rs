@@ -3,6 +3,7 @@
 #[macro_use]
 pub(super) mod check;
 mod absorbers;
+mod across;
 mod bodies;
 mod contact;
 mod defaults;
@@ -121,6 +122,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     total::resolve(case, &params.body)?;
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
+    across::check(case, params)?;
     check_moduli(case, &params.body)?;
     check_overlaps(case, &params.body)
 }
