@@ -110,6 +110,7 @@ pub fn main(commit: &'static str) -> ExitCode {
     };
     if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
         end_with_the_pipe();
+        exit_on_panic();
     }
     // The others start their own threads.
     if !matches!(
@@ -163,4 +164,13 @@ fn print_error(error: &clap::Error) {
 fn end_with_the_pipe() {
     // SAFETY: there is no other thread yet, and the handler is the system's own.
     unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
+}
+
+/// Ends the process with the code of a panic, after the message: a build that does not unwind would raise a signal.
+fn exit_on_panic() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        print(info);
+        std::process::exit(launch::EXIT_PANIC);
+    }));
 }

@@ -15,7 +15,7 @@ use comm::{Comm, Session, abort_job, library};
 use model::Case;
 
 /// Exit code of a program that panicked.
-const EXIT_PANIC: i32 = 101;
+pub const EXIT_PANIC: i32 = 101;
 
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
