@@ -36,7 +36,7 @@ def test_tables_have_columns_with_units(run):
 
 def test_figures_stand_in_columns(run):
     figures = run.figures
-    assert figures["plate.verdict"][0] == "held" and figures.unit("plate.verdict") == ""
+    assert figures["plate.verdict"][0] == "not_loaded" and figures.unit("plate.verdict") == ""
     hole = figures["plate.hole_diameter"]
     assert hole.dtype == np.float64 and figures.unit("plate.hole_diameter") == "m"
     assert (figures["plate.hole_diameter.uncertainty"] > 0.0).all()

@@ -93,6 +93,7 @@ pub fn run(args: &CheckArgs) -> u8 {
     let ranks = args.ranks as usize;
     if !args.format.is_json() {
         print_report(&case, &approaches, ranks);
+        say(&verdict(warnings.len()));
     }
     let drawn = args
         .picture
@@ -201,7 +202,7 @@ fn print_body(case: &Case, body: &Body) -> u64 {
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
-    say(&format!("{} ({}-D): sound", case.title, case.dimension));
+    say(&format!("{} ({}-D)", case.title, case.dimension));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
     let total: u64 = counts.sum();
     let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));
@@ -225,6 +226,14 @@ fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
     }
     let machine = machine(case, approaches);
     print_costs(case, total as f64, steps, ranks, &machine);
+}
+
+/// What a case with so many warnings is.
+fn verdict(warnings: usize) -> String {
+    match warnings {
+        0 => "sound".to_owned(),
+        some => format!("can run, with {}", counted(some as u64, "warning")),
+    }
 }
 
 /// Bodies that are going to meet, with their names.

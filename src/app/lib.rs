@@ -9,6 +9,7 @@ pub mod info;
 mod limit;
 mod materials;
 mod measure;
+pub mod memory;
 mod new;
 mod output_format;
 mod plan;
@@ -103,11 +104,20 @@ pub fn main(commit: &'static str) -> ExitCode {
                 Some(text) => say::say(&text),
                 None => print_error(&error),
             });
-            return ExitCode::from(if error.use_stderr() { EXIT_INPUT } else { 0 });
+            let code = if error.use_stderr() { EXIT_INPUT } else { 0 };
+            return ExitCode::from(say::exit_code(code));
         }
     };
     if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
         end_with_the_pipe();
+        exit_on_panic();
+    }
+    // The others start their own threads.
+    if !matches!(
+        cli.command,
+        Command::Run(_) | Command::Restart(_) | Command::Bench(_)
+    ) {
+        launch::bound_threads();
     }
     let code = match cli.command {
         Command::New(args) => new::run(&args),
@@ -136,7 +146,7 @@ pub fn main(commit: &'static str) -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Bench(args) => bench::run(&args),
     };
-    ExitCode::from(code)
+    ExitCode::from(say::exit_code(code))
 }
 
 /// Says what is wrong with the command line, or the help; in colours, unless the words that it
@@ -146,7 +156,7 @@ fn print_error(error: &clap::Error) {
     if std::env::args_os().any(hostile) {
         say::warn(&error.to_string());
     } else {
-        let _ = error.print();
+        say::note_loss(error.print());
     }
 }
 
@@ -154,4 +164,13 @@ fn print_error(error: &clap::Error) {
 fn end_with_the_pipe() {
     // SAFETY: there is no other thread yet, and the handler is the system's own.
     unsafe { libc::signal(libc::SIGPIPE, libc::SIG_DFL) };
+}
+
+/// Ends the process with the code of a panic, after the message: a build that does not unwind would raise a signal.
+fn exit_on_panic() {
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        print(info);
+        std::process::exit(launch::EXIT_PANIC);
+    }));
 }

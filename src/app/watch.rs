@@ -2,7 +2,7 @@
 
 mod frame;
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
@@ -11,7 +11,7 @@ use console::Term;
 use super::results::{running, status_and_presence};
 use files::output::{OutputError, Phase, Presence, RunFolder, Status};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
-use files::run::say::warn;
+use files::run::say::{self, warn};
 use frame::frame;
 use model::readable::one_line;
 
@@ -146,7 +146,5 @@ fn draw(lines: &[String], over: usize) {
     // If there are fewer than before, the rest is erased.
     let rest = if over > 0 { "\x1b[J" } else { "" };
     let text = format!("{back}{}{rest}", lines.collect::<String>());
-    let mut stdout = std::io::stdout().lock();
-    let _ = stdout.write_all(text.as_bytes());
-    let _ = stdout.flush();
+    say::print(&text);
 }

@@ -34,6 +34,44 @@ pub struct Shock {
     pub specific_energy: f64,
 }
 
+/// The shock that drives a material, at rest in its reference state, to a particle velocity `u` (m/s). Strength and
+/// failure are left out.
+///
+/// For equations of state other than Mie–Grüneisen, `η = u/U` is where the jump conditions
+/// `p = p₀ + ρ₀ u²/η` and `e = e₀ + u²/2 + p₀ η/ρ₀` meet the equation of state.
+#[must_use]
+pub fn shock(material: &Material, u: f64) -> Shock {
+    if let Some(medium) = Medium::of(material) {
+        return medium.shock(u);
+    }
+    let (rho0, eos) = (material.reference_density, &material.eos);
+    let e0 = eos.reference_energy(rho0);
+    let p0 = eos.at(rho0, rho0, e0).pressure;
+    let behind = |eta: f64| (rho0 / (1.0 - eta), e0 + 0.5 * u * u + p0 * eta / rho0);
+    let eta = bisect(0.0, 1.0, |eta| {
+        let (density, energy) = behind(eta);
+        (eos.at(rho0, density, energy).pressure - p0) * eta - rho0 * u * u
+    });
+    let (density, specific_energy) = behind(eta);
+    let shock_speed = u / eta.max(f64::MIN_POSITIVE);
+    Shock {
+        particle_velocity: u,
+        shock_speed,
+        pressure: p0 + rho0 * shock_speed * u,
+        density,
+        specific_energy,
+    }
+}
+
+/// The shocks in two materials that meet at `speed` (m/s, > 0): where both pressures agree.
+#[must_use]
+pub fn meeting([a, b]: [&Material; 2], speed: f64) -> [Shock; 2] {
+    let u = bisect(0.0, speed, |u| {
+        shock(a, u).pressure - shock(b, speed - u).pressure
+    });
+    [shock(a, u), shock(b, speed - u)]
+}
+
 /// The plane impact of a flyer on a target at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact {

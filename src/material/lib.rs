@@ -63,6 +63,15 @@ impl Material {
         (self.p_wave_modulus() / self.reference_density).sqrt()
     }
 
+    /// Melting temperature (K) at a density (kg/m³), if the material has any: that of its strength, or that of the thermal
+    /// constants.
+    #[must_use]
+    pub fn melting_temperature(&self, density: f64) -> Option<f64> {
+        let thermal = self.thermal.as_ref()?.constants();
+        let own = self.strength.melts_at(density / self.reference_density);
+        own.or(thermal.melting_temperature)
+    }
+
     /// Longest stable step (s) of viscous diffusion at the smoothing length `h` (m),
     /// `h² ρ₀/(8 η)` (Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214); infinite without
     /// viscosity.
@@ -313,6 +322,12 @@ impl Material {
             now.temperature =
                 self.torn_temperatures(thermal, state, &batch.pressure, &response.pressure);
             now.thermal = *thermal.constants();
+            if self.failure.has_memory() && now.options.molten != Some(Molten::Holds) {
+                for k in 0..LANES {
+                    let melting = self.melting_temperature(batch.density[k]);
+                    now.melting[k] = melting.unwrap_or(f64::INFINITY);
+                }
+            }
         }
     }
 

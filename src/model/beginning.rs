@@ -84,6 +84,20 @@ impl Case {
         }
     }
 
+    /// Modulus (Pa) that the stiffness of contact is a multiple of: that of p-waves in the reference state; of a gas at
+    /// least the bulk modulus at the start.
+    #[must_use]
+    pub fn contact_modulus(&self, body: &Body) -> f64 {
+        let material = &self.materials[body.material];
+        let reference = material.p_wave_modulus();
+        let Some([slope, offset]) = material.eos.modulus_over_pressure() else {
+            return reference;
+        };
+        let (density, energy) = (self.initial_density(body), self.initial_energy(body));
+        let begins = material.eos.at(material.reference_density, density, energy);
+        reference.max(slope * (begins.pressure + offset))
+    }
+
     /// The initial state of a particle of a body at `position` (m).
     #[must_use]
     pub fn beginning(&self, body: &Body, position: &Vec3) -> Beginning {

@@ -171,6 +171,8 @@ bitflags! {
         const FLAWS = 1 << 25;
         /// Bodies of the total form.
         const TOTAL = 1 << 26;
+        /// Contact of gases, whose stiffness follows their pressure.
+        const GAS_CONTACT = 1 << 27;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

@@ -86,6 +86,7 @@ impl FieldInfo {
                 || Owner::CONTACT
                     .union(Owner::FRICTION)
                     .union(Owner::PENALTY)
+                    .union(Owner::GAS_CONTACT)
                     .contains(self.owner)
                     && !self.owner.is_empty(),
             "the contact message is sent only where there is contact"
@@ -226,6 +227,8 @@ particle_fields! {
     /// Outward normal of a boundary particle, shorter at corners, zero inside: of `penalty`
     /// contact.
     boundary_normal: Vector,              "",       Scratch,  CONTACT,        OnDemand, PENALTY;
+    /// Factor of the stiffness of contact, which follows the pressure of a gas; one of other matter.
+    contact_stiffening: Scalar,           "",       Scratch,  CONTACT,        OnDemand, GAS_CONTACT;
     /// Contact energy.
     contact_energy: Scalar,               "J",      Scratch,  -,              OnDemand, CONTACT;
     /// Largest approach speed towards a neighbour, for the time step.

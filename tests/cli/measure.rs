@@ -34,7 +34,7 @@ fn snapshots_tell_what_the_run_told() {
     let mut measure = command(WHIPPLE);
     measure.arg("measure").arg(&run).args(["--at", "0us"]);
     let ended = end(&mut measure).with_code(0);
-    assert!(ended.stdout.contains("held"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("not_loaded"), "{}", ended.stdout);
     let mut measure = command(WHIPPLE);
     measure.arg("measure").arg(&run);
     measure.args(["--set", "measure.plate=[{ body = \"wall\" }]"]);

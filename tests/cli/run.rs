@@ -365,3 +365,116 @@ fn rows_are_dense_enough_for_a_curve_or_as_the_case_says() {
     let expected: Vec<f64> = due.map(f64::from).collect();
     assert_eq!(table(&few.join("history.csv"))["step"], expected);
 }
+
+/// Output that a full disk loses is a failure, whatever the command.
+#[test]
+fn output_that_is_lost_is_a_failure() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let case = quarter_impact();
+    end(coarse_run(1, &run).args(["--until", "5ns"])).with_code(0);
+    let at = run.display().to_string();
+    let other = place.path().join("other").display().to_string();
+    let commands: &[&[&str]] = &[
+        &["--help"],
+        &["--version"],
+        &["check", &case],
+        &["check", &case, "--explain"],
+        &["plan", &case, "--ranks", "2"],
+        &["info", &at],
+        &["info", &at, "--json"],
+        &["watch", &at, "--once"],
+        &["compare", &at, &at],
+        &["fragments", &at],
+        &["measure", &at],
+        &["materials"],
+        &[
+            "limit",
+            "sizing",
+            "--diameter",
+            "1cm",
+            "--gap",
+            "30cm",
+            "--yield",
+            "40ksi",
+        ],
+        &["generate", "schema"],
+        &[
+            "run",
+            &case,
+            "--set",
+            "run.max_steps=2",
+            "--set",
+            "spacing=0.1mm",
+            "--out",
+            &other,
+        ],
+    ];
+    for words in commands {
+        let full = fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let mut program = command(WHIPPLE);
+        let output = program.args(*words).stdout(full).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{words:?}: {said}");
+        assert!(
+            said.contains("error: cannot write to the standard output: "),
+            "{words:?}: {said}"
+        );
+    }
+}
+
+/// A number of threads beyond the cores is not taken at its word.
+#[test]
+fn threads_are_bounded_by_the_cores() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    let most = std::thread::available_parallelism().unwrap().get() as u64;
+    let mut program = command(WHIPPLE);
+    program.env("RAYON_NUM_THREADS", "999999");
+    program.args(["run", &quarter_impact(), "--set", "run.max_steps=2"]);
+    let ended = end(program.args(["--set", "spacing=0.1mm", "--out"]).arg(&run)).with_code(0);
+    assert_eq!(
+        ended
+            .complaints("warning: RAYON_NUM_THREADS is 999999")
+            .len(),
+        1,
+        "{ended:#?}"
+    );
+    assert_eq!(json(&run.join("summary.json"))["threads"], most);
+    let mut check = command(WHIPPLE);
+    check.env("RAYON_NUM_THREADS", "999999");
+    let ended = end(check.args(["check", &quarter_impact()])).with_code(0);
+    assert_eq!(
+        ended
+            .complaints("warning: RAYON_NUM_THREADS is 999999")
+            .len(),
+        1,
+        "{ended:#?}"
+    );
+}
+
+/// Without memory a run ends with one message, also where a backtrace is asked for.
+#[test]
+fn without_memory_there_is_one_message() {
+    let place = tempfile::tempdir().unwrap();
+    let mut program = command("bash");
+    program.env("RUST_BACKTRACE", "1");
+    program.args(["-c", "ulimit -v 600000; exec \"$0\" \"$@\"", WHIPPLE]);
+    program.args([
+        "run",
+        &quarter_impact(),
+        "--threads",
+        "2",
+        "--set",
+        "spacing=0.006mm",
+    ]);
+    let ended = end(program.arg("--out").arg(place.path().join("run"))).with_code(1);
+    assert_eq!(
+        ended.complaints("error: out of memory: ").len(),
+        1,
+        "{ended:#?}"
+    );
+}

@@ -44,7 +44,7 @@ fn check_says_what_a_case_costs() {
     assert_eq!(ended.stderr.lines().count(), 1, "{ended:#?}");
     let said = ended.stdout;
     let expected = "\
-Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
+Aluminium sphere at 7 km/s on an aluminium plate (3-D)
   plate                  2828 particles of aluminium, spacing 0.05 mm, h 0.065 mm, 9.843e-7 kg (each 0.02 % less than its cell)
   sphere                  228 particles of aluminium, spacing 0.05 mm, h 0.065 mm, 7.8744e-8 kg (each 0.79 % less than its cell)
                    begins with velocity [0, 0, -7] km/s
@@ -53,8 +53,12 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D): sound
   about 63 steps to 0.2 us
   about 0.2 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
   about 10 MB on the disk at the end
+can run, with 1 warning
 ";
     assert_eq!(said, expected);
+    let check = ["check", &quarter_impact()];
+    let ended = end(without_mpi().args(check)).with_code(0);
+    assert_eq!(ended.stdout.lines().last(), Some("sound"), "{ended:#?}");
 
     // What is doubtful is said, and said by a run, too.
     let set = [

@@ -90,6 +90,30 @@ fn signals_stop_softly() {
     assert_goes_on(&run, &reference, 1);
 }
 
+/// A closed terminal and a limit of processor time ask as SIGTERM does; under `nohup` a closed terminal asks nothing.
+#[test]
+#[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
+fn a_closed_terminal_and_the_processor_time_stop_softly() {
+    let place = folder();
+    let on = |mut program: Command, run: &Path| {
+        program.args(["run", &quarter_impact()]).args(COARSE);
+        program.arg("--out").arg(run);
+        program
+    };
+    for name in ["HUP", "XCPU"] {
+        let run = place.path().join(name);
+        let mut alone = on(command(WHIPPLE), &run);
+        let ended = stopped(&mut alone, &run, |rank| signal(name, rank.id()));
+        assert_stopped(&ended, &run, "a signal asked to stop");
+    }
+    let run = place.path().join("nohup");
+    let mut nohup = command("bash");
+    nohup.args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", WHIPPLE]);
+    let ended = stopped(&mut on(nohup, &run), &run, |rank| signal("HUP", rank.id()));
+    assert_eq!(ended.code, Some(0), "{ended:#?}");
+    assert_eq!(status(&run).0, "finished");
+}
+
 #[test]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {

@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use crate::physics_support::{inline, run_to, start};
+use crate::physics_support::{inline, run_to, run_with, start};
 use comm::Comm;
 use engine::step::Simulation;
 use files::preflight::{approaches, beginning, warnings};
@@ -263,4 +263,34 @@ fn formulas_are_fast() {
         "{spread}"
     );
     assert!(begun.elapsed().as_secs() < 30);
+}
+
+/// What begins at rest, or nearly so, has errors as well: of the largest motion so far, not of the first.
+#[test]
+fn errors_are_of_the_largest_motion_so_far() {
+    for first in ["0 m/s", "1 um/s"] {
+        let mut s = start(block(
+            "1 mm",
+            &format!("density = \"9500 kg/m^3\"\nvelocity = [\"{first}\", 0, 0]"),
+        ));
+        let (mut motion, mut energy) = (0.0_f64, 0.0_f64);
+        run_with(&mut s, 2e-6, |s| {
+            motion = motion.max(s.state.totals.momentum_scale);
+            energy = energy.max(s.state.totals.kinetic_energy);
+        });
+        let worst = s.state.worst;
+        println!("{first}: {energy} J, {motion} N s; {worst:?}");
+        assert!(s.state.initial.kinetic_energy < 1e-12 * energy);
+        assert_eq!(worst.energy_error, worst.energy_deviation / energy);
+        for a in 0..3 {
+            assert_eq!(
+                worst.momentum_error[a],
+                worst.momentum_deviation[a] / motion
+            );
+        }
+        assert!((0.0..1e-10).contains(&worst.energy_error) && worst.energy_error > 0.0);
+        assert!(worst.momentum_error.iter().all(|&e| e < 1e-13));
+        let turned = worst.angular_momentum_error.into_iter().fold(0.0, f64::max);
+        assert!(turned > 0.0 && turned < 1e-3, "{turned:e}");
+    }
 }

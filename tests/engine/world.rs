@@ -65,6 +65,7 @@ impl World {
     pub fn new(case: Case, placed: &[(usize, [f64; 3])]) -> Self {
         let mut particles = ParticleStore::default();
         particles.resize_owned(placed.len());
+        particles.contact_stiffening.fill(1.0);
         let mut motion = Vec::new();
         for (i, &(b, position)) in placed.iter().enumerate() {
             let body = &case.bodies[b];

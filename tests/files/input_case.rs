@@ -2,7 +2,7 @@
 
 use files::input::{load, output_and_run_only, parse};
 use files::preflight::{approaches, warnings};
-use material::{Strength, library};
+use material::{AfterSpall, Failure, Spall, Strength, library};
 use model::{
     Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
 };
@@ -58,6 +58,36 @@ fn the_main_job() {
     );
     assert_eq!(case.run.end_time.to_bits(), 0.2e-6f64.to_bits());
     assert!(matches!(case.default_contact, ContactMode::Overlap(_)));
+}
+
+/// What bears no shear and is a liquid cavitates, unless its case says more; a gas needs no limit.
+#[test]
+fn liquids_cavitate() {
+    let failure = |material: &str| {
+        let text = format!(
+            "dimension = 2\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n[material.m]\n{material}\n\
+             [[body]]\nname = \"b\"\nmaterial = \"m\"\nshape.box = {{ lower = [0, 0], upper = [\"9 mm\", \"9 mm\"] }}\n"
+        );
+        let case = parse("liquid", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+        case.materials[0].failure
+    };
+    let tait = "density = \"1 g/cm^3\"\neos.tait.sound_speed = \"1.5 km/s\"\nstrength = \"none\"";
+    let water = "library = \"water\"\neos.tait.sound_speed = \"25 m/s\"";
+    for material in [tait, water] {
+        assert_eq!(failure(material).spall, Failure::CAVITATES.spall);
+        assert_eq!(
+            failure(&format!("{material}\nfailure = \"none\"")),
+            Failure::NONE
+        );
+        let more = failure(&format!("{material}\nfailure.spall.pressure = \"-5 MPa\""));
+        let held = Spall {
+            pressure: -5e6,
+            after: AfterSpall::Hold,
+        };
+        assert_eq!(more.spall, Some(held));
+    }
+    assert_eq!(failure("library = \"air\""), Failure::NONE);
+    assert_eq!(failure("library = \"granite-tillotson\""), Failure::NONE);
 }
 
 #[test]

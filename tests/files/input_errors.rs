@@ -801,3 +801,73 @@ fn stress_points_say_what_they_do_not_go_with() {
     let message = message(&hexagonal, &[]);
     assert!(message.contains("that of `ball` is hexagonal"), "{message}");
 }
+
+/// What a symmetry plane cuts does not move across it; what comes from afar, or begins at it, may.
+#[test]
+fn what_a_plane_cuts_does_not_move_across_it() {
+    let ball = |more: &str| GOOD.replace("velocity = [0, 0, \"1 km/s\"]", more);
+    let and = |more: &str| format!("{GOOD}{more}");
+    let rigid = |more: &str| {
+        let text = ball(more).replacen("material = \"metal\"\n", "", 1);
+        text.replace("name = \"ball\"\n", "name = \"ball\"\nrigid = true\n")
+    };
+    let load = |more: &str| {
+        and(&format!(
+            "[[load]]\nname = \"grip\"\nbody = \"ball\"\n{more}\n"
+        ))
+    };
+    let table = |more: &str| {
+        and(&format!(
+            "[[plane]]\nname = \"lid\"\npoint = [0, 0, \"5 cm\"]\n{more}\n"
+        ))
+    };
+    let roll = |more: &str| {
+        and(&format!(
+            "[[surface]]\nname = \"roll\"\nshape.sphere = {{ centre = [0, 0, \"-3 cm\"], radius = \"1 cm\" }}\n{more}\n"
+        ))
+    };
+    for (text, what) in [
+        (ball("velocity = [\"1 m/s\", 0, \"1 km/s\"]"), "`ball`"),
+        (
+            ball("velocity = [\"1 m/s + 1 m/s * x / 1 mm\", 0, 0]"),
+            "`ball`",
+        ),
+        (rigid("velocity = [\"-1 m/s\", 0, 0]"), "`ball`"),
+        (
+            rigid("motion = { times = [0, \"1 us\"], x = [0, \"1 m/s\"] }"),
+            "`ball`",
+        ),
+        (load("velocity = { x = \"1 m/s\" }"), "what `grip` drives"),
+        (
+            load("below = { z = 0 }\nvelocity = { x = \"1 m/s\" }"),
+            "what `grip` drives",
+        ),
+        (
+            table("normal = \"-z\"\nmotion = { x = \"1 m/s\" }"),
+            "`lid`",
+        ),
+        (roll("motion = { x = \"1 m/s\" }"), "`roll`"),
+        (
+            roll("rotation = { axis = \"z\", rate = \"1 rad/s\" }"),
+            "`roll`",
+        ),
+    ] {
+        let message = message(&text, &[]);
+        let expected = format!("error: {what} moves across the symmetry plane of x that cuts it");
+        assert!(message.starts_with(&expected), "{message}");
+    }
+    for text in [
+        ball("velocity = [\"1 m/s * x / 1 mm\", 0, 0]"),
+        ball("angular_velocity = [\"1 rad/s\", 0, 0]"),
+        ball("velocity = [\"-1 km/s\", 0, 0]").replace(
+            "shape.sphere = { radius",
+            "shape.sphere = { centre = [\"9 mm\", 0, 0], radius",
+        ),
+        GOOD.replace("\"2 cm\"] }", "\"2 cm\"] }\nvelocity = [\"-1 m/s\", 0, 0]"),
+        load("above = { x = \"3 mm\" }\nvelocity = { x = \"1 m/s\" }"),
+        table("normal = \"-z\"\nmotion = { z = \"-1 m/s\" }"),
+        roll("rotation = { axis = \"x\", rate = \"1 rad/s\" }"),
+    ] {
+        parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    }
+}

@@ -216,6 +216,13 @@ fn a_plate_has_its_hole_and_lips() {
 fn plates_are_judged() {
     let verdict = |simulation: &mut Simulation| told(&measure(simulation), "verdict");
     let mut untouched = plate(|_| None);
+    assert_eq!(verdict(&mut untouched), Told::Word("not_loaded"));
+    // It flies as a whole, which is no load either; one particle that is pushed is one.
+    deform(&mut untouched, 1, |x| Some((x, [0.0, 5.0, -300.0])));
+    untouched.particles.plastic_strain.fill(0.0);
+    assert_eq!(verdict(&mut untouched), Told::Word("not_loaded"));
+    let struck = untouched.particles.body.iter().position(|&body| body == 1);
+    untouched.particles.velocity[struck.unwrap()][2] -= 1.0;
     assert_eq!(verdict(&mut untouched), Told::Word("held"));
     // A dent without a gap.
     let dent = |[x, y, z]: [f64; 3]| {
@@ -255,6 +262,18 @@ fn plates_are_judged() {
     assert_eq!(number(&found, "hole_diameter"), 0.0);
     is(&found, "dish_depth", 10.0 * D);
     assert!((number(&found, "rear_speed") - 10.0).abs() < 0.1);
+    // As long as it goes on, that is no verdict.
+    for i in 0..bulged.particles.owned() {
+        bulged.particles.velocity[i][2] *= 50.0;
+    }
+    let found = measure(&mut bulged);
+    assert_eq!(told(&found, "verdict"), Told::Word("still_moving"));
+    let (speed, settling) = (
+        number(&found, "moving_speed"),
+        number(&found, "settling_time"),
+    );
+    println!("{speed} m/s, {settling} s");
+    assert!((100.0..500.0).contains(&speed) && (1e-8..1e-4).contains(&settling));
     // What lies loose in the bulge has not left to the rear, however deep the bulge is.
     let mut loose = plate(|[x, y, z]| {
         let deep = 10.0 * (1.0 - (x * x + y * y) / 225.0).max(0.0);
@@ -286,7 +305,7 @@ fn plates_are_judged() {
             Some(([a + x, b, c - 50.0], [30.0 * sideways, 0.0, -45.0]))
         });
         let found = measure(&mut flown);
-        let word = if through { "perforated" } else { "held" };
+        let word = if through { "perforated" } else { "not_loaded" };
         assert_eq!(told(&found, "verdict"), Told::Word(word), "{x} {sideways}");
         assert_eq!(number(&found, "passed_mass") > 0.0, through, "{x}");
     }
@@ -368,6 +387,49 @@ fn plates_are_judged_by_what_is_clear() {
     let found = measure(&mut stray);
     assert_eq!(told(&found, "verdict"), Told::Word("held"));
     assert_eq!(number(&found, "rear_mass"), 0.0);
+}
+
+/// A crater of a ball is told against the ball's own surface, not against the plane before it.
+#[test]
+fn a_crater_of_a_ball_does_not_count_its_curvature() {
+    let radius = 24.0;
+    let ball = |centre: f64, radius: f64| Shape::Sphere {
+        centre: Vec3::new(0.0, 0.0, centre * D),
+        radius: radius * D,
+    };
+    let bodies = vec![
+        body("grain", ball(6.0, 4.0), D, Vec3::new(0.0, 0.0, -3000.0)),
+        body("moon", ball(-radius, radius), D, Vec3::zeros()),
+    ];
+    let mut case = case(3, bodies, 1.0);
+    let slab = Slab::new(&case, 1, [0.0, 0.0, 1.0], Include::All);
+    case.measure.measures = measured(MeasureKind::Target(slab));
+    let mut simulation = start(case);
+    deform(&mut simulation, 1, |[x, y, z]| {
+        let r = (x * x + y * y + z * z).sqrt();
+        if r < 8.0 {
+            Some(([2.0 * x, 2.0 * y, 40.0 - z], [100.0 * x, 100.0 * y, 500.0]))
+        } else {
+            (r < 10.0).then_some(([x, y, z], STILL))
+        }
+    });
+    // What two balls share.
+    let drop = 64.0 / (2.0 * radius);
+    let cap = |radius: f64, height: f64| PI * height * height * (radius - height / 3.0);
+    let volume = (cap(8.0, 8.0 - drop) + cap(radius, drop)) * D.powi(3);
+    for _ in 0..2 {
+        let found = measure(&mut simulation);
+        is(&found, "crater_depth", 8.0 * D);
+        is(
+            &found,
+            "crater_diameter",
+            2.0 * (64.0 - drop * drop).sqrt() * D,
+        );
+        is(&found, "crater_volume", volume);
+        is(&found, "rim_height", 0.0);
+        let (turn, shift) = moved();
+        move_all(&mut simulation, &turn, shift);
+    }
 }
 
 /// A half ball of radius 8 thrown out of a block of 40 × 40 × 16 spacings.

@@ -61,6 +61,20 @@ fn bodies_that_meet_without_contact_are_told() {
 }
 
 #[test]
+fn an_end_before_the_last_arrival_is_told() {
+    let wall = "[[body]]\nname = \"wall\"\nmaterial = \"metal\"\n\
+                shape.box = { lower = [\"-2 mm\", \"-3 mm\"], upper = [\"3 mm\", \"-2 mm\"] }\n";
+    let said = |end: &str| {
+        let set = [format!("run.end_time={end}")];
+        let case = parse("bar", &format!("{BAR}\n{wall}"), &set).unwrap();
+        warnings(&case, &approaches(&case))
+    };
+    let late = "`run.end_time` is 20 us, before `bar` can reach `wall` at 40 us: a verdict on what is struck comes later";
+    assert_eq!(said("20us"), [late]);
+    assert_eq!(said("50us"), [""; 0]);
+}
+
+#[test]
 fn an_end_before_anything_meets_is_told() {
     assert_told(
         &["run.end_time=5us"],
@@ -198,13 +212,46 @@ fn a_shock_through_what_cannot_fail_is_told() {
     let said = told(&["body.bar.velocity=[0, \"-1 km/s\"]"]);
     assert_eq!(said.len(), 1, "once for a material: {said:?}");
     assert!(
-        said[0].contains("`metal` cannot fail: what the release of a shock of 18 GPa would tear"),
+        said[0].contains("`metal` cannot fail: what the release of a shock of 21 GPa would tear"),
         "{said:?}"
     );
     let fast = "body.bar.velocity=[0, \"-1 km/s\"]";
     assert_told(&[fast, "material.metal.library=copper-ductile"], &[]);
     assert_told(&[fast, "material.metal.strength=none"], &[]);
     assert_told(&["body.bar.velocity=[0, \"-500 m/s\"]"], &[]);
+}
+
+/// The pressure is that of both Hugoniots: an acoustic one would be 52 `GPa`.
+#[test]
+fn the_shock_that_is_named_is_that_of_the_hugoniots() {
+    let fast = "body.bar.velocity=[0, \"-7 km/s\"]";
+    let said = told(&[
+        fast,
+        "material.metal.library=aluminium-2024",
+        "material.metal.failure=none",
+    ]);
+    assert!(
+        said.iter().any(|line| line.contains("a shock of 98 GPa")),
+        "{said:?}"
+    );
+}
+
+/// A gas needs a pressure by which rigid surfaces could push it.
+#[test]
+fn gas_without_pressure_is_told() {
+    let set = [
+        "contact.mode=none",
+        "plane=[{ normal = \"+y\", point = [0, \"-1 mm\"] }]",
+        "material.gas={ density = \"1 kg/m^3\", eos.ideal_gas.gamma = 1.4, strength = \"none\" }",
+        "body.bar.material=gas",
+    ];
+    let is_told = |said: &[String]| {
+        said.iter()
+            .any(|line| line.contains("gas without pressure"))
+    };
+    assert!(is_told(&told(&set)));
+    let hot = [&set[..], &["body.bar.specific_energy=\"1 MJ/kg\""]].concat();
+    assert!(!is_told(&told(&hot)));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Plane impact of Mie–Grüneisen materials against tabulated figures and the jump conditions.
 
 use crate::exact::release::free_surface_velocity;
-use exact::hugoniot::{Medium, impact};
+use exact::hugoniot::{Medium, impact, meeting, shock};
 use exact::plates::{Plate, profile};
 use material::library;
 
@@ -45,6 +45,34 @@ fn symmetric_impact_pressures() {
             assert!((result.interface_velocity - 0.5 * speed).abs() < 1e-9 * speed);
         }
     }
+}
+
+/// Shocks in any equation of state: on its surface, and by the jump conditions of a gas and of Mie–Grüneisen.
+#[test]
+fn shocks_meet_the_equation_of_state() {
+    let air = library::find("air").unwrap();
+    let (rho, p0, u) = (air.reference_density, 101_325.0, 1e3);
+    let quarter = 0.25 * 2.4 * u;
+    let speed = quarter + f64::hypot(quarter, (1.4 * p0 / rho).sqrt());
+    let behind = shock(&air, u);
+    assert!((behind.shock_speed / speed - 1.0).abs() < 1e-9);
+    assert!((behind.pressure / (p0 + rho * speed * u) - 1.0).abs() < 1e-9);
+    for name in ["water", "basalt-tillotson", "iron-tillotson", "air"] {
+        let material = library::find(name).unwrap();
+        let behind = shock(&material, 2e3);
+        let at = (material.eos).at(
+            material.reference_density,
+            behind.density,
+            behind.specific_energy,
+        );
+        assert!((at.pressure / behind.pressure - 1.0).abs() < 1e-6, "{name}");
+    }
+    let metals = ["copper", "aluminium-2024"].map(|name| library::find(name).unwrap());
+    let [a, b] = meeting([&metals[0], &metals[1]], 7e3);
+    assert!((a.pressure / b.pressure - 1.0).abs() < 1e-9);
+    assert!((a.particle_velocity + b.particle_velocity - 7e3).abs() < 1e-6);
+    let exact = impact(&medium("aluminium-2024"), &medium("copper"), 7e3);
+    assert!((a.pressure / exact.pressure - 1.0).abs() < 1e-9);
 }
 
 #[test]

@@ -423,7 +423,7 @@ fn molten_matter_fails_when_nothing_presses_it() {
     for molten in [Molten::Fails, Molten::Holds] {
         let mut metal = metal();
         metal.failure.johnson_cook = Some(ductile(AL_6061));
-        metal.failure.options.molten = molten;
+        metal.failure.options.molten = Some(molten);
         metal.thermal = Some(Thermal::new(HEAT, RHO, &metal.eos));
         let mut points = batch(1.05 * RHO, 0.0);
         points.specific_energy = [metal.energy(1.05 * RHO, 950.0).unwrap(); LANES];
@@ -434,6 +434,55 @@ fn molten_matter_fails_when_nothing_presses_it() {
         let fails = molten == Molten::Fails;
         assert_eq!(points.damage, [f64::from(u8::from(fails)); LANES]);
         assert_eq!(points.pressure[0] == 0.0, fails);
+    }
+}
+
+/// The melting temperature is that of the strength where this has its own, and follows the density.
+#[test]
+fn matter_melts_where_its_strength_says() {
+    let mut metal = library::find("copper-steinberg-guinan").unwrap();
+    let rho = metal.reference_density;
+    let Strength::SteinbergGuinan(law) = metal.strength.clone() else {
+        panic!("of Steinberg and Guinan")
+    };
+    let melting = metal.melting_temperature(0.95 * rho).unwrap();
+    assert_eq!(melting, law.melting_temperature(0.95));
+    metal.failure.spall = Some(Spall {
+        pressure: -1e12,
+        after: AfterSpall::Failed,
+    });
+    for (share, damage) in [(0.98, 0.0), (1.02, 1.0)] {
+        let (mut density, temperature) = (0.95 * rho, share * melting);
+        // Under some tension, and still at this density's own melting temperature.
+        let pressure = |density: f64| {
+            let energy = metal.energy(density, temperature).unwrap();
+            metal.eos.at(rho, density, energy).pressure
+        };
+        while pressure(density) > -1e8 {
+            density *= 0.999;
+        }
+        let share = temperature / law.melting_temperature(density / rho);
+        let mut points = batch(density, metal.energy(density, temperature).unwrap());
+        metal.update(&mut points, 1e-9);
+        let expected = if share >= 1.0 { 1.0 } else { damage };
+        assert_eq!(points.damage, [expected; LANES], "{share}");
+    }
+}
+
+/// A material of which nothing else follows the temperature fails when molten, if that is said.
+#[test]
+fn what_is_said_of_molten_matter_holds_for_any_material() {
+    for (molten, damage) in [(None, 0.0), (Some(Molten::Fails), 1.0)] {
+        let mut metal = metal();
+        metal.failure.spall = Some(Spall {
+            pressure: -1e12,
+            after: AfterSpall::Failed,
+        });
+        metal.failure.options.molten = molten;
+        metal.thermal = Some(Thermal::new(HEAT, RHO, &metal.eos));
+        let mut points = batch(0.99 * RHO, metal.energy(0.99 * RHO, 950.0).unwrap());
+        metal.update(&mut points, 1e-9);
+        assert_eq!(points.damage, [damage; LANES]);
     }
 }
 

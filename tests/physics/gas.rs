@@ -136,3 +136,139 @@ fn nohs_wall() {
         println!("rates {:.3?}", pair[0].rates(&pair[1]));
     }
 }
+
+/// A gas at 80 `MPa` drives a plate of steel: Lagrange's gun. Until the rarefaction has come back from the closed end, at
+/// some 2 L/c, the plate of mass m per area has the velocity
+/// `u = 2 c/(γ − 1) [1 − (1 + (γ + 1) p t/(2 m c))^(−(γ − 1)/(γ + 1))]`. The bound is a spacing of the gas in the path
+/// that the plate has gone.
+#[test]
+fn a_gas_drives_a_plate_as_in_a_gun() {
+    let case = files::input::parse(
+        "gun",
+        r#"
+dimension = 1
+spacing = "0.25 mm"
+run.end_time = "60 us"
+material.air.library = "air"
+material.steel.library = "steel-304"
+symmetry = [{ axis = "x" }]
+
+[[body]]
+name = "charge"
+material = "air"
+density = "100 kg/m^3"
+specific_energy = "2 MJ/kg"
+shape.box = { lower = [0], upper = ["40 mm"] }
+
+[[body]]
+name = "plate"
+material = "steel"
+shape.box = { lower = ["40 mm"], upper = ["43 mm"] }
+"#,
+        &[],
+    );
+    let case = case.unwrap_or_else(|error| panic!("{error}"));
+    let steel = case.materials[case.bodies[1].material].reference_density;
+    let mut s = start(case);
+    run_to(&mut s, 60e-6);
+    let (gamma, pressure, density): (f64, f64, f64) = (1.4, 80e6, 100.0);
+    let (c, mass) = ((gamma * pressure / density).sqrt(), 3e-3 * steel);
+    let stretch = 1.0 + 0.5 * (gamma + 1.0) * pressure * s.state.time / (mass * c);
+    let exact = 2.0 * c / (gamma - 1.0) * (1.0 - stretch.powf((1.0 - gamma) / (gamma + 1.0)));
+    let particles = &s.particles;
+    let plate = (0..particles.owned()).filter(|&i| particles.body[i] == 1);
+    let momentum: f64 = plate
+        .map(|i| particles.mass[i] * particles.velocity[i][0])
+        .sum();
+    let velocity = momentum / mass;
+    println!(
+        "{velocity:.2} m/s of {exact:.2}, energy {:.1e}, defect {:.1e}, interpenetrated {}",
+        s.state.worst.energy_error, s.state.worst.contact_defect, s.state.interpenetrated
+    );
+    assert!(
+        (velocity / exact - 1.0).abs() < 0.02,
+        "{velocity} of {exact}"
+    );
+    assert_eq!(s.state.interpenetrated, 0);
+    assert!(s.state.worst.energy_error < 1e-4);
+}
+
+/// Air of one atmosphere flies at a rigid plane at 1 km/s. The pressure there is seventeen times that of the reference
+/// state, and contact has to follow it: the impulse is that of the exact shock, `p t` with `p = p₀ + ρ₀ U u`.
+#[test]
+fn a_rigid_plane_holds_what_stagnates_on_it() {
+    let case = files::input::parse(
+        "wind",
+        r#"
+dimension = 1
+spacing = "0.5 mm"
+run.end_time = "60 us"
+material.air.library = "air"
+plane = [{ normal = "+x" }]
+
+[[body]]
+name = "wind"
+material = "air"
+shape.box = { lower = [0], upper = ["150 mm"] }
+velocity = ["-1 km/s"]
+"#,
+        &[],
+    );
+    let mut s = start(case.unwrap_or_else(|error| panic!("{error}")));
+    run_to(&mut s, 60e-6);
+    let quarter: f64 = 0.25 * 2.4 * 1e3;
+    let (rho, p): (f64, f64) = (1.225, 101_325.0);
+    let speed = quarter + quarter.hypot((1.4 * p / rho).sqrt());
+    let exact = (p + rho * speed * 1e3) * s.state.time;
+    let impulse = s.state.load_impulse()[0];
+    let particles = &s.particles;
+    let nearest = (0..particles.owned())
+        .map(|i| particles.position[i][0])
+        .fold(1.0, f64::min);
+    println!(
+        "impulse {:.4} of the exact one, nearest {:.3} spacings, energy {:.1e}",
+        impulse / exact,
+        nearest / 0.5e-3,
+        s.state.worst.energy_error
+    );
+    assert!((impulse / exact - 1.0).abs() < 0.03);
+    assert!(nearest > 0.0);
+}
+
+/// Hot air in a vessel of rigid planes stays in it and comes to rest.
+#[test]
+fn a_rigid_vessel_holds_hot_gas() {
+    let case = files::input::parse(
+        "vessel",
+        r#"
+dimension = 2
+spacing = "0.5 mm"
+run.end_time = "20 us"
+material.air.library = "air"
+plane = [
+  { normal = "+x" },
+  { normal = "+y" },
+  { normal = "-x", point = ["8 mm", 0] },
+  { normal = "-y", point = [0, "8 mm"] },
+]
+
+[[body]]
+name = "charge"
+material = "air"
+density = "100 kg/m^3"
+specific_energy = "2 MJ/kg"
+shape.box = { lower = [0, 0], upper = ["8 mm", "8 mm"] }
+"#,
+        &[],
+    );
+    let mut s = start(case.unwrap_or_else(|error| panic!("{error}")));
+    run_to(&mut s, 20e-6);
+    let particles = &s.particles;
+    let inside = |x: &f64| (0.0..8e-3).contains(x);
+    assert!((0..particles.owned()).all(|i| particles.position[i][..2].iter().all(inside)));
+    let energy: f64 = (0..particles.owned())
+        .map(|i| 0.5 * particles.mass[i] * particles.velocity[i].map(|v| v * v).iter().sum::<f64>())
+        .sum();
+    println!("{energy:.2e} of 12800 J/m move");
+    assert!(energy < 12.8, "{energy}");
+}

@@ -206,7 +206,7 @@ mean 'history'?); it has: history, ...
 
         >>> figures = whipple.open("runs/quarter-impact").figures
         >>> str(figures["plate.verdict"][0]), figures.unit("plate.hole_diameter")
-        ('held', 'm')
+        ('not_loaded', 'm')
         """
         return sheets.figures(self.measures)
 

@@ -1,6 +1,7 @@
 //! The conditions of bisections: `fragments.largest_mass<1 mg`, `history.interpenetrated==0`.
 
 use super::answers::Answers;
+use model::readable::shown;
 use model::units;
 
 /// A comparison operator.
@@ -14,6 +15,9 @@ enum Compared {
 
 /// Verdicts of plates that have failed, as designers of shields count them.
 const FAILED: [&str; 2] = ["detached spall", "perforated"];
+
+/// Verdicts that are none: of plates that nothing has reached, or that go on.
+const NO_VERDICT: [&str; 2] = ["not_loaded", "still_moving"];
 
 /// A condition on the answers of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,7 +100,10 @@ fn has_failed(name: Option<&str>, answers: &Answers) -> Result<bool, String> {
     });
     let wanted = verdicts.filter(|(plate, _)| name.is_none_or(|name| name == *plate));
     match wanted.collect::<Vec<_>>()[..] {
-        [(_, verdict)] => Ok(FAILED.contains(&verdict)),
+        [(plate, verdict)] => {
+            final_verdict(plate, answers)?;
+            Ok(FAILED.contains(&verdict))
+        }
         [] => Err("the run has no verdict on such a plate".to_owned()),
         [(first, _), ..] => Err(format!(
             "the run has verdicts on several plates: name one, as in `failed {first}`"
@@ -104,11 +111,35 @@ fn has_failed(name: Option<&str>, answers: &Answers) -> Result<bool, String> {
     }
 }
 
+/// Fails with a message if the verdict on a plate is none, and says how long to run on.
+fn final_verdict(plate: &str, answers: &Answers) -> Result<(), String> {
+    let told = |figure: &str| answers.get(&format!("measures.{plate}.{figure}"));
+    let verdict = told("verdict").map_or("", |answer| answer.text.as_str());
+    if !NO_VERDICT.contains(&verdict) {
+        return Ok(());
+    }
+    let number = |figure: &str| told(figure).and_then(|answer| answer.text.parse::<f64>().ok());
+    Err(match (number("moving_speed"), number("settling_time")) {
+        (Some(speed), Some(time)) if verdict == "still_moving" => format!(
+            "`{plate}` still moves at {}: run on for {} or more",
+            shown(speed, "m/s"),
+            shown(time, "s")
+        ),
+        _ => format!("nothing has reached `{plate}` at the end: let the run go on"),
+    })
+}
+
 impl Comparison {
     fn holds(&self, answers: &Answers) -> Result<bool, String> {
         let Some(answer) = answers.get(&self.name) else {
             return Err(format!("the run has no answer `{}`", self.name));
         };
+        let plate = self.name.strip_prefix("measures.");
+        if let Some(plate) = plate.and_then(|name| name.strip_suffix(".verdict"))
+            && self.with != answer.text
+        {
+            final_verdict(plate, answers)?;
+        }
         let is_equal = || match (answer.text.parse::<f64>(), units::parse(&self.with)) {
             (Ok(a), Ok((b, _))) => a == b,
             _ => answer.text == self.with,
@@ -162,6 +193,13 @@ mod tests {
         assert_eq!(holds("failed wall", name, "attached spall"), Ok(false));
         assert!(holds("failed bumper", name, "held").is_err());
         assert_eq!(holds("failed_mass>1", "failed_mass", "2"), Ok(true));
+        // A question that has no answer yet is not answered, but for itself.
+        for word in ["not_loaded", "still_moving"] {
+            assert!(holds("failed", name, word).is_err(), "{word}");
+            assert!(holds("measures.wall.verdict!=held", name, word).is_err());
+            let itself = format!("measures.wall.verdict=={word}");
+            assert_eq!(holds(&itself, name, word), Ok(true));
+        }
     }
 
     #[test]

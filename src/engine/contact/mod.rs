@@ -2,7 +2,7 @@
 //!
 //! Contact sees reference volumes `V = m/ρ₀`, reference smoothing lengths and reference moduli
 //! only, so that its energy is a function of positions alone and its forces are that function's
-//! exact gradient (physics page, section 5).
+//! exact gradient (physics page, section 5). Gases alone are as stiff as their pressure, see `gas`.
 //!
 //! A mode is an `impl` of `Constants` and of `Mode` for its parameters; nothing else knows it by
 //! name.
@@ -11,6 +11,7 @@ mod accumulators;
 mod connectivity;
 mod force;
 pub mod friction;
+mod gas;
 mod mode;
 pub mod overlap;
 mod pair;

@@ -83,6 +83,8 @@ pub(crate) struct ParticlePair<'a, M: Mode> {
     pub j: &'a ContactParticle,
     pub separation: Separation,
     pub constants: &'a Pair,
+    /// Factors of the stiffness of both.
+    pub stiffening: [f64; 2],
     /// Constants of the mode.
     pub own: &'a M::Pair,
     pub here: M::Side,
@@ -122,10 +124,23 @@ impl<'a, M: Mode> ParticlePair<'a, M> {
             j,
             separation: Separation::between(i, j),
             constants: view.table.pair(i.size_class, j.size_class),
+            stiffening: [view.stiffening(i), view.stiffening(j)],
             own: view.table.own::<M>(i.size_class, j.size_class),
             here,
             there: M::side(view, j),
         }
+    }
+
+    /// Mean of both factors of the stiffness: that of the energy which each side has half of.
+    #[inline(always)]
+    pub fn mean_stiffening(&self) -> f64 {
+        0.5 * (self.stiffening[0] + self.stiffening[1])
+    }
+
+    /// Half of the pair's energy with its mean factor to that of this side.
+    #[inline(always)]
+    pub fn own_share(&self) -> f64 {
+        self.stiffening[0] / self.mean_stiffening()
     }
 
     /// A force of `magnitude` (N) along the line between the two, or the part of it along the
@@ -152,6 +167,7 @@ impl TaskForces {
         for (index, neighbours) in list {
             let i = view.particle(index);
             let here = M::side(view, &i);
+            let rate = view.stiffening_rate(&i);
             let mut on = Receiver::new(&i, neighbours.len(), &mut self.by_body);
             let mut friction = FRICTION.then(|| PairFriction::of(view, &i));
             for &other in neighbours {
@@ -161,11 +177,11 @@ impl TaskForces {
                 let Some(mut exerted) = M::force(&pair, &mut on.sum.stiffness) else {
                     continue;
                 };
-                let mut heat = 0.0;
+                let mut heat = -rate * exerted.energy;
                 if let Some(friction) = &mut friction {
                     friction.pair(view, [&i, &j], exerted.loads);
                     exerted.resist(friction);
-                    heat = friction.heat;
+                    heat += friction.heat;
                 }
                 on.add(&j, &exerted.force, exerted.energy, heat);
                 if exerted.drag > 0.0 {

@@ -90,9 +90,7 @@ impl Constants for Overlap {
 /// speed against each other that the case states. M and ρ are harmonic means of moduli and
 /// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
 fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
-    let modulus = harmonic_mean(case, bodies, |body| {
-        case.materials[body.material].p_wave_modulus()
-    });
+    let modulus = harmonic_mean(case, bodies, |body| case.contact_modulus(body));
     let speed = case.closing_speed(bodies[0], bodies[1]);
     modulus.max(0.85 * meeting_density(case, bodies) * speed * speed)
 }
@@ -172,6 +170,7 @@ impl Mode for Overlap {
             j,
             separation,
             constants,
+            stiffening: [s_i, s_j],
             own,
             here,
             there,
@@ -185,25 +184,27 @@ impl Mode for Overlap {
         let back = view.table.overlap(j.size_class, i.size_class);
         if pressed {
             let slope = -constants.kernel.slope(distance);
-            let pressure = slope_of_energy(here, own) + slope_of_energy(there, back);
+            let pressure = s_i * slope_of_energy(here, own) + s_j * slope_of_energy(there, back);
             bulk = i.volume * j.volume * pressure * slope;
             *stiffness += bulk_stiffness(pair, slope);
             drag = isolated_drag(pair, slope);
             if here.excess > 0.0 {
                 let share = j.volume * constants.kernel.value(distance) * own.modulus;
-                energy += 0.5 * i.volume * (here.excess * here.excess) * share / here.fraction;
+                energy +=
+                    s_i * (0.5 * i.volume * (here.excess * here.excess) * share / here.fraction);
             }
         }
         let depth = 1.0 - distance / own.core_radius;
         if depth > 0.0 {
             let volume = 0.5 * (i.volume + j.volume);
             let stress = own.core_modulus * volume;
-            core = stress * depth / own.core_radius;
+            let mean = pair.mean_stiffening();
+            core = mean * stress * depth / own.core_radius;
             let approach = separation.approach().max(0.0);
             drag += own.core_viscosity * volume * depth * (approach * approach);
             // Half of the pair's energy stands on each side.
-            energy += 0.25 * stress * (depth * depth);
-            *stiffness += 2.0 * stress / (own.core_radius * own.core_radius);
+            energy += s_i * (0.25 * stress * (depth * depth));
+            *stiffness += mean * 2.0 * stress / (own.core_radius * own.core_radius);
         }
         let force = if own.along_normal {
             // The core has no use for normals: it keeps lone particles apart.
@@ -273,11 +274,12 @@ fn own_force(
     here: &Fraction,
 ) -> f64 {
     let (pair, own) = constants(view, i, j);
+    let stiffening = view.stiffening(i);
     let slope = -pair.kernel.slope(separation.distance);
     let bulk = i.volume * j.volume * slope_of_energy(here, own).max(0.0) * slope;
     let depth = (1.0 - separation.distance / own.core_radius).max(0.0);
     let stress = own.core_modulus * (0.5 * (i.volume + j.volume));
-    bulk + 0.5 * stress * depth / own.core_radius
+    stiffening * (bulk + 0.5 * stress * depth / own.core_radius)
 }
 
 /// `B ρ' ṙ² V_i V_j |∇W_ij| min(1, (E_i + E_j)/E_0) min(1, λ_i + λ_j)` of a pair that approaches (N).
@@ -307,5 +309,6 @@ fn bulk_stiffness(pair: &ParticlePair<Overlap>, slope: f64) -> f64 {
     let active = |f: &Fraction| if f.excess > 0.0 { f.slope } else { 0.0 };
     let steep = (active(here) + active(there)) * slope;
     let bent = (here.excess + there.excess) * curvature;
-    2.0 * pair.own.modulus * pair.i.volume * pair.j.volume * (steep + bent)
+    let modulus = pair.own.modulus * pair.stiffening[0].max(pair.stiffening[1]);
+    2.0 * modulus * pair.i.volume * pair.j.volume * (steep + bent)
 }

@@ -129,7 +129,7 @@ impl Pair {
 /// density.
 fn friction(case: &Case, bodies: [&Body; 2], spacing: f64, input: &Resistance) -> Law {
     let facts = bodies.map(|body| {
-        let modulus = case.materials[body.material].p_wave_modulus();
+        let modulus = case.contact_modulus(body);
         (modulus, case.initial_density(body))
     });
     let softer = usize::from(facts[1].0 < facts[0].0);

@@ -109,7 +109,8 @@ impl Mode for Penalty {
             }
             let weight = share * (1.0 - aside) * (1.0 - aside);
             weights += weight;
-            let strength = weight * pair.own.modulus * volume / spacing;
+            let modulus = pair.own.modulus * pair.mean_stiffening();
+            let strength = weight * modulus * volume / spacing;
             let root = depth.sqrt();
             for a in 0..3 {
                 force[a] += strength * depth * root * n[a];
@@ -123,6 +124,7 @@ impl Mode for Penalty {
             return None;
         }
         *stiffness += slope;
+        energy *= pair.own_share();
         if pair.own.pinball {
             // It stores nothing: what it takes is lost.
             energy = 0.0;

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::ContactTable;
 use super::accumulators::Accumulators;
 use super::connectivity::Connectivity;
+use super::gas;
 use super::mode::{Measurements, Scene, fill};
 use super::sums::ContactSums;
 use super::surfaces::SurfaceForces;
@@ -82,6 +83,9 @@ impl Contact {
     /// Measures particles with foreign neighbours for the forces, after a step `dt` (s).
     pub fn measure(&mut self, particles: &mut ParticleStore, lists: &Lists, dt: f64) {
         if self.table.is_active() {
+            if self.table.has_gas() {
+                gas::stiffen(&self.table.gases, particles);
+            }
             self.measurements.measure(&mut Scene {
                 particles,
                 lists,

@@ -55,7 +55,7 @@ impl Mode for Potential {
         let ratio = kernel.value(distance) * own.inverse_kernel;
         let slope = -kernel.slope(distance) * own.inverse_kernel;
         let curvature = kernel.curvature(distance).abs() * own.inverse_kernel;
-        let strength = own.stiffness * pair.i.volume * pair.j.volume;
+        let strength = own.stiffness * pair.mean_stiffening() * pair.i.volume * pair.j.volume;
         let n = f64::from(own.exponent);
         let steeper = power(ratio, own.exponent - 1);
         // With either range: the step must be short enough before the force sets in.
@@ -69,7 +69,7 @@ impl Mode for Potential {
             PairForce {
                 force: pair.along(force, own.along_normal),
                 drag: 0.0,
-                energy: 0.5 * strength * rise,
+                energy: 0.5 * strength * rise * pair.own_share(),
                 loads: [0.0; 2],
             }
         })

@@ -10,6 +10,7 @@ use friction::SurfaceFriction;
 
 use super::force::ContactStress;
 use super::friction::Law;
+use super::gas::{Gas, stiffening};
 use super::{ContactSums, ContactTable};
 use crate::loads::{Loads, Placed, SurfaceStep};
 use model::{Body, Case, RigidSurface};
@@ -37,6 +38,8 @@ pub(super) struct Push {
     pub ground: [f64; 3],
     /// Heat by friction and damping (W).
     pub heat: f64,
+    /// Heat that a gas gives as it stiffens, negative (W).
+    exchanged: f64,
 }
 
 /// Constants of a surface and a size class of particles that it acts on.
@@ -61,8 +64,9 @@ pub(crate) struct SurfaceForces {
     surfaces: Vec<RigidSurface>,
     /// Force of each surface, and its torque about the axis that it turns about.
     pub(crate) sums: Vec<[ExactSum; 4]>,
-    /// Heat of each, if any has friction or damping.
+    /// Heat of each, if any has friction or damping or a body is of gas.
     pub(crate) heat: Vec<ExactSum>,
+    has_friction: bool,
     /// By task.
     pushes: Vec<Vec<Push>>,
     /// The same of friction and damping; empty without.
@@ -71,6 +75,7 @@ pub(crate) struct SurfaceForces {
 
 impl SurfaceForces {
     pub(super) fn new(case: &Case) -> Self {
+        let has_gas = (case.bodies.iter()).any(|body| Gas::of(case, body).is_some());
         let size_classes = SizeClasses::new(case);
         let bodies: Vec<Body> = (0..size_classes.count())
             .map(|size_class| size_classes.body_of_size(case, size_class))
@@ -93,11 +98,12 @@ impl SurfaceForces {
                 .iter()
                 .map(|_| Default::default())
                 .collect(),
-            heat: if case.loads.has_friction() {
+            heat: if case.loads.has_friction() || has_gas {
                 vec![ExactSum::default(); case.loads.surfaces.len()]
             } else {
                 Vec::new()
             },
+            has_friction: case.loads.has_friction(),
             pushes: Vec::new(),
             friction: Vec::new(),
         }
@@ -119,13 +125,13 @@ impl SurfaceForces {
 /// Stiffness over volume of the spring that sticks, `¼ M/Δp²` (Pa/m²).
 fn stick(case: &Case, body: &Body) -> f64 {
     let spacing = body.lattice.spacing;
-    0.25 * case.materials[body.material].p_wave_modulus() / (spacing * spacing)
+    0.25 * case.contact_modulus(body) / (spacing * spacing)
 }
 
 impl Penalty {
     fn new(case: &Case, body: &Body, surface: &RigidSurface) -> Self {
         let spacing = body.lattice.spacing;
-        let modulus = surface.stiffness * case.materials[body.material].p_wave_modulus();
+        let modulus = surface.stiffness * case.contact_modulus(body);
         let input = &surface.resistance;
         let critical = 2.0 * (modulus * case.initial_density(body)).sqrt() / spacing;
         Self {
@@ -184,7 +190,8 @@ impl SurfaceForces {
         for surface in 0..self.sums.len() {
             let [x, y, z, torque, heat] = self.sum(|push| {
                 let [x, y, z] = push.force;
-                (push.surface == surface).then_some([x, y, z, push.torque, push.heat])
+                let heat = push.heat + push.exchanged;
+                (push.surface == surface).then_some([x, y, z, push.torque, heat])
             });
             self.sums[surface] = [x, y, z, torque];
             if let Some(sum) = self.heat.get_mut(surface) {
@@ -205,6 +212,7 @@ impl SurfaceForces {
         ]
         .map(|field| Scatter::new(field));
         let acceleration = Scatter::new(&mut particles.contact_acceleration);
+        let heating = Scatter::new(&mut particles.d_specific_energy_dt);
         let all = self.pushes.par_iter().flat_map_iter(|chunk| chunk);
         all.for_each(|push| {
             let i = push.particle;
@@ -215,6 +223,7 @@ impl SurfaceForces {
                     *a += force * per_mass;
                 }
                 *energy.slot(i) += push.energy;
+                *heating.slot(i) += push.exchanged * per_mass;
                 *stiffness.slot(i) += push.stiffness;
                 *approach.slot(i) = approach.slot(i).max(push.approach);
             }
@@ -275,7 +284,7 @@ impl SurfaceForces {
             penalties: &self.penalties,
             sticks: &self.sticks,
         };
-        let has_friction = !self.heat.is_empty();
+        let has_friction = self.has_friction;
         let chunks = self.pushes.par_iter_mut().zip(&mut self.friction);
         chunks.enumerate().for_each(|(chunk, (pushes, friction))| {
             pushes.clear();
@@ -330,8 +339,9 @@ impl View<'_> {
         if separation >= penalty.h.max(penalty.reach) || self.particles.mass[i] == 0.0 {
             return None;
         }
-        let stiffness = penalty.stiffness * volume;
+        let stiffness = penalty.stiffness * stiffening(self.particles, i) * volume;
         let force = placed.outward(escape.way.map(|u| stiffness * u));
+        let energy = 0.5 * stiffness * escape.depth2;
         let (v, surface_v) = (&self.particles.predicted_velocity[i], placed.velocity(x));
         let normal = placed.outward(escape.foot.normal);
         let rate = dot(
@@ -347,13 +357,14 @@ impl View<'_> {
             surface: n,
             torque: placed.torque(x, &force),
             force,
-            energy: 0.5 * stiffness * escape.depth2,
+            energy,
             stiffness: stiffness * escape.walls,
             approach: penalty.approach(separation, rate),
             normal,
             gap: separation,
             ground: surface_v,
             heat: 0.0,
+            exchanged: -self.table.stiffening_rate(self.particles, i) * energy,
         })
     }
 }

@@ -1,10 +1,11 @@
 //! Parameters of every pair of size classes of particles, computed once at set-up.
 
+use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use model::{Body, Case, ContactMode, SelfContact};
 use numerics::kernel::{Kernel, SUPPORT};
 use particles::neighbours::{ForeignTable, Groups, SizeClasses};
-use particles::{HaloPhase, Owner};
+use particles::{HaloPhase, Owner, ParticleStore};
 
 /// All pairs of size classes.
 #[derive(Debug, Clone)]
@@ -23,6 +24,8 @@ pub struct ContactTable {
     inverse_densities: Vec<f64>,
     /// Multiple of its reference volume that a particle's material may fill, by body.
     expansions: Vec<f64>,
+    /// Bodies of gas, by body.
+    pub(super) gases: Vec<Option<Gas>>,
     owners: Owner,
 }
 
@@ -52,6 +55,7 @@ impl ContactTable {
             pairs: Vec::with_capacity(n * n),
             inverse_densities: Vec::with_capacity(case.bodies.len()),
             expansions: Vec::with_capacity(case.bodies.len()),
+            gases: case.bodies.iter().map(|body| Gas::of(case, body)).collect(),
             owners: Owner::empty(),
         };
         for body in &case.bodies {
@@ -74,6 +78,10 @@ impl ContactTable {
         }
         if table.has_pairs() || !case.loads.surfaces.is_empty() {
             table.owners |= Owner::CONTACT;
+            if table.gases.iter().any(Option::is_some) {
+                table.owners |= Owner::GAS_CONTACT;
+                table.halo |= HaloPhase::CONTACT;
+            }
         }
         if table.has_friction() {
             table.owners |= Owner::FRICTION;
@@ -86,7 +94,7 @@ impl ContactTable {
         let [a, b] = size_classes.map(|size_class| self.foreign.size_classes.body(size_class));
         let mode = mode_between(case, a, b);
         let pair = Pair::new(case, &self.kernel, bodies, &mode);
-        let modulus = bodies.map(|body| case.materials[body.material].p_wave_modulus());
+        let modulus = bodies.map(|body| case.contact_modulus(body));
         let of = Between {
             case,
             kernel: &self.kernel,
@@ -188,6 +196,26 @@ impl ContactTable {
     #[must_use]
     pub fn has_pairs(&self) -> bool {
         self.foreign.class.iter().any(Option::is_some)
+    }
+
+    /// True if the stiffness of any contact follows the pressure of a gas.
+    pub(super) fn has_gas(&self) -> bool {
+        self.owners.contains(Owner::GAS_CONTACT)
+    }
+
+    /// Relative rate of the factor of the stiffness of a particle (1/s), see [`gas`](super::gas).
+    pub(super) fn stiffening_rate(&self, particles: &ParticleStore, i: usize) -> f64 {
+        if !self.has_gas() {
+            return 0.0;
+        }
+        let gas = self.gases[particles.body[i] as usize].as_ref();
+        gas.map_or(0.0, |gas| gas.rate(particles, i))
+    }
+
+    /// True if contact of bodies exchanges heat with their particles.
+    #[must_use]
+    pub fn has_heat(&self) -> bool {
+        self.has_friction() || self.has_gas()
     }
 
     /// True if any pair of bodies has friction or damping.

@@ -1,6 +1,7 @@
 //! Inputs of the contact sums: particles as they meet, and their separations.
 
 use super::ContactTable;
+use super::gas::stiffening;
 use numerics::vector::square;
 use particles::neighbours::{Lists, MotionRecord};
 use particles::{Image, MirrorMask, Mirrors, ParticleStore};
@@ -68,6 +69,17 @@ impl<'a> ContactView<'a> {
             position: record.position,
             velocity: record.velocity,
         }
+    }
+
+    /// Factor of the stiffness of a particle, see [`gas`](super::gas).
+    #[inline(always)]
+    pub(super) fn stiffening(&self, particle: &ContactParticle) -> f64 {
+        stiffening(self.particles, particle.slot)
+    }
+
+    /// Its relative rate (1/s).
+    pub(super) fn stiffening_rate(&self, particle: &ContactParticle) -> f64 {
+        self.table.stiffening_rate(self.particles, particle.slot)
     }
 
     /// The normal of the surface between two particles: that of both, from their bodies' corrected

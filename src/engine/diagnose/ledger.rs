@@ -232,7 +232,7 @@ pub struct RunState {
     /// Angular impulse about the origin of these, of loads and of rigid bodies so far (N m s).
     #[serde(default)]
     pub angular_impulse: [f64; 3],
-    /// `Σ |(x − x̄) × m v|` about the centre of mass at the start (kg m²/s); none in states of
+    /// Largest `Σ |(x − x̄) × m v|` about the centre of mass so far (kg m²/s); none in states of
     /// programs that did not sum it.
     #[serde(default)]
     pub angular_momentum_scale: Option<f64>,
@@ -243,6 +243,12 @@ pub struct RunState {
     pub pairs: Vec<PairState>,
     /// Ledgers of prescribed velocities, rigid bodies, absorbing zones and rigid surfaces.
     pub loads: Vec<LoadState>,
+    /// Largest kinetic energy so far (J).
+    #[serde(default)]
+    pub most_kinetic_energy: f64,
+    /// Largest `Σ |m v|` so far (kg m/s).
+    #[serde(default)]
+    pub most_momentum: f64,
     /// Largest work of loads and gravity so far (J).
     pub work_put_in: f64,
     /// Largest impulse of loads and gravity so far (N s).
@@ -420,16 +426,16 @@ pub struct Worst {
     pub contact_deviation: f64,
     /// |momentum − first value − impulses of planes, loads and gravity| (kg m/s), by component.
     pub momentum_deviation: [f64; 3],
-    /// `energy_deviation` over the initial kinetic energy, or over the work put in if that is more.
+    /// `energy_deviation` over the largest kinetic energy so far, or over the work put in if that is more.
     pub energy_error: f64,
     /// `contact_deviation` over the same.
     pub contact_defect: f64,
-    /// `momentum_deviation` over Σ|m v| at the start, or over the impulse put in if that is more.
+    /// `momentum_deviation` over the largest Σ|m v| so far, or over the impulse put in if that is more.
     pub momentum_error: [f64; 3],
     /// |angular momentum − first value − angular impulses| (kg m²/s), by component.
     #[serde(default)]
     pub angular_momentum_deviation: [f64; 3],
-    /// `angular_momentum_deviation` over Σ|(x − x̄) × m v| at the start, or over the angular impulse put
+    /// `angular_momentum_deviation` over the largest Σ|(x − x̄) × m v| so far, or over the angular impulse put
     /// in if that is more.
     #[serde(default)]
     pub angular_momentum_error: [f64; 3],

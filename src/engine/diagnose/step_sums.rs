@@ -67,7 +67,7 @@ impl StepSums {
             pair_keys: pairs.map(|[a, b]| pair_key(bodies, a, b)).collect(),
             bodies,
             crossed: Vec::new(),
-            friction: table.has_friction(),
+            friction: table.has_heat(),
             meetings: Meetings::default(),
             contact_work: ExactSum::default(),
             crossing_impulse: Default::default(),

@@ -127,7 +127,7 @@ pub fn failed_mass(particles: &ParticleStore, bodies: usize, comm: &Comm) -> Vec
 }
 
 /// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a rigid body,
-/// with x̄ (m) their centre of mass. Collective.
+/// with x̄ (m) their centre of mass now. Collective.
 pub(crate) fn angular_momentum_scale(particles: &ParticleStore, loads: &Loads, comm: &Comm) -> f64 {
     let mut sums = loads.sum_free(particles, |i| {
         let m = particles.mass[i];
@@ -137,9 +137,12 @@ pub(crate) fn angular_momentum_scale(particles: &ParticleStore, loads: &Loads, c
     reduce(comm, &mut sums);
     let [mass, centre @ ..] = sums.map(|sum| sum.value());
     let mut scale = loads.sum_free(particles, |i| {
-        let x = &particles.position[i];
+        let (x, v) = (&particles.position[i], &particles.velocity[i]);
+        if *v == [0.0; 3] {
+            return [0.0];
+        }
         let arm = std::array::from_fn(|a| x[a] - centre[a] / mass);
-        [particles.mass[i] * norm(&cross(&arm, &particles.velocity[i]))]
+        [particles.mass[i] * norm(&cross(&arm, v))]
     });
     reduce(comm, &mut scale);
     scale[0].value()
@@ -185,9 +188,17 @@ impl RunState {
         }
     }
 
-    /// Takes sums over all particles, under gravity (m/s²), with the errors that follow from them.
-    pub(crate) fn book_totals(&mut self, totals: Totals, gravity: [f64; 3]) {
+    /// Takes sums over all particles, under gravity (m/s²), and their `Σ |(x − x̄) × m v|` (kg m²/s), with the errors that
+    /// follow from them.
+    pub(crate) fn book_totals(&mut self, totals: Totals, turning: f64, gravity: [f64; 3]) {
         self.totals = totals;
+        // The states of programs that kept no largest values have those of the start.
+        for sums in [self.initial, totals] {
+            self.most_kinetic_energy = self.most_kinetic_energy.max(sums.kinetic_energy);
+            self.most_momentum = self.most_momentum.max(sums.momentum_scale);
+        }
+        let most = &mut self.angular_momentum_scale;
+        *most = most.map(|most| most.max(turning));
         let (work, impulse) = (self.load_work(), self.load_impulse());
         let fallen = totals.gravity_energy - self.initial.gravity_energy;
         self.work_put_in = self.work_put_in.max(work.abs()).max(fallen.abs());
@@ -195,7 +206,7 @@ impl RunState {
         let worst = &mut self.worst;
         let error = totals.energy() + removed - self.initial.energy() - work;
         worst.energy_deviation = worst.energy_deviation.max(error.abs());
-        let scale = self.initial.kinetic_energy.max(self.work_put_in);
+        let scale = self.most_kinetic_energy.max(self.work_put_in);
         if scale > 0.0 {
             worst.energy_error = worst.energy_deviation / scale;
             worst.contact_defect = worst.contact_deviation / scale;
@@ -216,7 +227,7 @@ impl RunState {
         }
         self.book_angular_momentum();
         let worst = &mut self.worst;
-        let scale = self.initial.momentum_scale.max(self.momentum_put_in);
+        let scale = self.most_momentum.max(self.momentum_put_in);
         if scale > 0.0 {
             worst.momentum_error = worst.momentum_deviation.map(|error| error / scale);
         }
@@ -251,7 +262,7 @@ impl RunState {
         let defect =
             self.contact_work + gone + self.contact_energy - self.initial.contact_energy + heat;
         worst.contact_deviation = worst.contact_deviation.max(defect.abs());
-        let scale = self.initial.kinetic_energy.max(self.work_put_in);
+        let scale = self.most_kinetic_energy.max(self.work_put_in);
         if scale > 0.0 {
             worst.contact_defect = worst.contact_deviation / scale;
         }

@@ -101,8 +101,7 @@ impl Part {
         let damage = particles.damage.get(i).copied().unwrap_or_default();
         let work = particles.plastic_energy.get(i).copied();
         let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-        let melting = material.thermal.as_ref();
-        let melting = melting.and_then(|t| t.constants().melting_temperature);
+        let melting = material.melting_temperature(density);
         let molten = melting.is_some_and(|melting| temperature >= melting);
         let (turn, speed) = (cross(x, v), norm(v));
         let mass_if = |yes: bool| if yes { thermal } else { 0.0 };

@@ -9,7 +9,7 @@ use super::mask::{Mask, diameter};
 use super::matter::{Matter, raise};
 use super::remains::{Belongs, Remains};
 use comm::Comm;
-use model::Slab;
+use model::{NumericalLimits, Slab};
 use numerics::vector::dot;
 
 /// A gap or a flying piece counts if it is this many voxels wide, a hole if it is wider.
@@ -27,6 +27,13 @@ const LEAST_AROUND: f64 = 0.25;
 /// Lips are looked for as far as this many radii of the hole.
 const FARTHEST: f64 = 3.0;
 
+/// Nothing acts on a plate whose parts move and press less than this over the natural speed of the case, and the stress
+/// of a wave with that speed.
+const STILL: f64 = 1e-6;
+
+/// A plate that has this kinetic energy density over its yield stress, and so may stretch as much, still moves.
+const STRETCHES: f64 = 0.01;
+
 /// Fate of a plate, the worst first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
@@ -38,6 +45,10 @@ pub enum Verdict {
     Pinhole,
     /// There is a gap inside, and what lies behind it has not left.
     AttachedSpall,
+    /// Nothing has acted on it yet.
+    NotLoaded,
+    /// It goes on to the rear faster than its strength stops at once.
+    StillMoving,
     /// None of these.
     Held,
 }
@@ -51,6 +62,8 @@ impl Verdict {
             Self::DetachedSpall => "detached spall",
             Self::Pinhole => "pinhole",
             Self::AttachedSpall => "attached spall",
+            Self::NotLoaded => "not_loaded",
+            Self::StillMoving => "still_moving",
             Self::Held => "held",
         }
     }
@@ -110,6 +123,84 @@ impl Left {
             passed,
             speed: speed.max(0.0),
         }
+    }
+}
+
+/// Motion of what remains of a plate, against its mean velocity.
+struct Motion {
+    /// True if nothing has acted on it.
+    rests: bool,
+    /// Mean speed (m/s) towards the rear, by kinetic energy.
+    speed: f64,
+    /// Mass (kg) of the whole that has as much kinetic energy at that speed.
+    mass: f64,
+    /// Its kinetic energy density over the yield stress: the stretch that may still come.
+    stretch: f64,
+    /// Time (s) in which the yield stress about its rim stops the moving part; not a number where there is none.
+    settling: f64,
+}
+
+impl Motion {
+    fn find(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Self {
+        let is_its = |i: usize| matter.body_of(i) == slab.body && remains.holds(i) == Belongs::Yes;
+        let rearwards = |i: usize| -dot(&slab.normal, &matter.velocity[i]);
+        let [mass, momentum] = matter.sums::<2>(comm, |i, sums| {
+            if is_its(i) {
+                sums.add(&[matter.mass[i], matter.mass[i] * rearwards(i)]);
+            }
+        });
+        let mean = momentum / mass;
+        let [energy, flow] = matter.sums::<2>(comm, |i, sums| {
+            let w = rearwards(i) - mean;
+            if is_its(i) && w > 0.0 {
+                let m = matter.mass[i] * w * w;
+                sums.add(&[m, m * w]);
+            }
+        });
+        let [faster, slower, pressure] = matter.largest::<3>(comm, |i, most| {
+            if is_its(i) {
+                raise(&mut most[0], rearwards(i));
+                raise(&mut most[1], -rearwards(i));
+                raise(&mut most[2], matter.pressure[i].abs());
+            }
+        });
+        let material = &matter.case.materials[matter.case.bodies[slab.body].material];
+        let still = STILL * NumericalLimits::natural_speed(matter.case);
+        let wave = material.reference_density * material.longitudinal_speed() * still;
+        let has_flowed = material.strength.yields() && remains.attached().is_some();
+        let rests = !has_flowed && faster + slower <= still && pressure <= wave;
+        if !(energy > 0.0 && material.strength.yields()) {
+            return Self {
+                rests,
+                speed: 0.0,
+                mass: 0.0,
+                stretch: 0.0,
+                settling: f64::NAN,
+            };
+        }
+        let speed = flow / energy;
+        let density = matter.case.density_of(slab.body);
+        let strength = material.strength.yield_stress();
+        // A plug of the moving mass, or a strip of it in the plane, which its rim shears at Y/√3.
+        let mass = super::Whole::new(&matter.mirrors).sum(energy / (speed * speed));
+        let area = mass / (density * slab.thickness());
+        let arm = match matter.case.dimension {
+            3 => 0.5 * (area / PI).sqrt(),
+            2 => 0.5 * area,
+            _ => f64::NAN,
+        };
+        Self {
+            rests,
+            speed,
+            mass,
+            stretch: 0.5 * density * speed * speed / strength,
+            settling: 3.0_f64.sqrt() * density * arm * speed / strength,
+        }
+    }
+
+    /// True if it goes on, and more of it than a mass (kg).
+    fn goes_on(&self, least: f64) -> bool {
+        self.mass >= least && self.stretch > STRETCHES && self.settling.is_finite()
     }
 }
 
@@ -270,6 +361,7 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
     let left = Left::find(slab, remains, matter, comm);
     let density = matter.case.density_of(slab.body);
     let least = density * (LEAST * shape.edge).powi(3);
+    let motion = Motion::find(slab, remains, matter, comm);
     let verdict = if shape.hole > LEAST * shape.edge || left.passed >= least {
         Verdict::Perforated
     } else if left.rear >= least {
@@ -278,8 +370,17 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
         Verdict::Pinhole
     } else if shape.parted {
         Verdict::AttachedSpall
+    } else if motion.rests {
+        Verdict::NotLoaded
     } else {
         Verdict::Held
+    };
+    // What may still get worse is no verdict.
+    let may_fail = verdict == Verdict::Held || verdict == Verdict::AttachedSpall;
+    let verdict = if may_fail && motion.goes_on(least) {
+        Verdict::StillMoving
+    } else {
+        verdict
     };
     let length = |name, value: f64| Figure::number(name, value, "m").within(shape.edge);
     let mass = |name, value: f64| Figure::number(name, value, "kg");
@@ -314,6 +415,8 @@ pub fn plate(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Fi
             mass("removed_mass", left.front + left.rear).within(left.doubtful),
             mass("passed_mass", left.passed),
             Figure::number("rear_speed", left.speed, "m/s"),
+            Figure::number("moving_speed", motion.speed, "m/s"),
+            Figure::number("settling_time", motion.settling, "s"),
         ],
         distributions: Vec::new(),
     }

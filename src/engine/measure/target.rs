@@ -2,8 +2,11 @@
 
 use std::f64::consts::PI;
 
+use rayon::prelude::*;
+
 use super::attached::Attached;
 use super::figure::{Distribution, Figure, Findings};
+use super::footprint::Footprint;
 use super::mask::{Mask, diameter};
 use super::matter::Matter;
 use super::remains::{Belongs, Remains};
@@ -13,9 +16,12 @@ use model::Slab;
 /// Rings of a profile reach this many radii of the crater.
 const PROFILE: f64 = 3.0;
 
-/// The crater of what remains of a target.
+/// Where the surface of the start is steeper than this cosine of its slope, a depth along the normal tells little.
+const STEEPEST: f64 = 0.5;
+
+/// The crater of what remains of a target, against its own surface of the start.
 struct Crater {
-    /// Greatest depth (m) below the face.
+    /// Greatest depth (m) below that surface.
     depth: f64,
     /// Diameter (m) of a circle with its area in the face.
     diameter: f64,
@@ -36,28 +42,44 @@ impl Crater {
         profile: Vec::new(),
     };
 
-    fn of(slab: &Slab, attached: &Attached) -> Self {
-        let edge = attached.window.edge;
-        // A column of the target without matter is as deep as it.
-        let depth = |(column, ends): (usize, Option<[f64; 2]>)| match ends {
-            _ if !attached.is_of_body(column) => 0.0,
-            Some([_, top]) => slab.front - top,
-            None => slab.thickness(),
+    fn of(attached: &Attached, footprint: &Footprint) -> Self {
+        let (window, edge) = (&attached.window, attached.window.edge);
+        let columns = (0..window.kept().iter().product()).into_par_iter();
+        let faces: Vec<Option<(f64, f64)>> = columns
+            .map(|column| {
+                let face = footprint.front(window.middle(column));
+                face.filter(|(_, cosine)| *cosine >= STEEPEST)
+            })
+            .collect();
+        let columns = || window.images().zip(attached.ends()).enumerate();
+        let depths: Vec<f64> = columns()
+            .map(|(column, (image, ends))| match (faces[image], ends) {
+                (Some((face, _)), Some([_, top])) if attached.is_of_body(column) => face - top,
+                // A column of the target without matter is as deep as it.
+                (Some((face, _)), None) if attached.is_of_body(column) => {
+                    let rear = footprint.rear(window.middle(image));
+                    rear.map_or(0.0, |rear| face - rear)
+                }
+                _ => 0.0,
+            })
+            .collect();
+        // The ends of a column are certain to half a voxel normal to the surface.
+        let is_below = |(&depth, image): (&f64, usize)| {
+            faces[image].is_some_and(|(_, cosine)| depth > 0.5 * edge / cosine)
         };
-        let depths: Vec<f64> = attached.ends().enumerate().map(depth).collect();
-        let deepest = depths
-            .iter()
-            .enumerate()
+        let below: Vec<bool> = depths.iter().zip(window.images()).map(is_below).collect();
+        let deepest = (depths.iter().enumerate())
+            .filter(|(cell, _)| below[*cell])
             .fold(None, |best, (cell, &depth)| match best {
                 Some((_, most)) if depth <= most => best,
                 _ => Some((cell, depth)),
             });
         let rim = depths.iter().fold(0.0, |most: f64, depth| most.max(-depth));
-        let Some((cell, depth)) = deepest.filter(|(_, depth)| *depth > 0.5 * edge) else {
+        let Some((cell, depth)) = deepest else {
             return Self { rim, ..Self::NONE };
         };
-        let counts = [attached.window.counts[0], attached.window.counts[1]];
-        let below = Mask::new(counts, depths.iter().map(|&d| d > 0.5 * edge).collect());
+        let counts = [window.counts[0], window.counts[1]];
+        let below = Mask::new(counts, below);
         let crater = below.part_of(cell);
         let volume: f64 = crater.cells().map(|cell| depths[cell]).sum();
         let mut crater = Self {
@@ -118,7 +140,10 @@ fn uncertain_volume(crater: &Crater, edge: f64) -> f64 {
 /// The measures of a target. Collective.
 pub fn target(slab: &Slab, remains: &Remains, matter: &Matter, comm: &Comm) -> Findings {
     let (crater, edge) = match remains.attached() {
-        Some(attached) => (Crater::of(slab, attached), attached.window.edge),
+        Some(attached) => {
+            let footprint = remains.footprint(slab, matter);
+            (Crater::of(attached, &footprint), attached.window.edge)
+        }
         None => (Crater::NONE, slab.spacing),
     };
     let [loose, doubtful] = matter.sums::<2>(comm, |i, sums| {

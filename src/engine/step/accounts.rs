@@ -1,7 +1,7 @@
 //! Sums, extremes and measures of a run.
 
 use crate::contact::ContactTable;
-use crate::diagnose::{KeptTotals, RunState, StepSums, Totals};
+use crate::diagnose::{KeptTotals, RunState, StepSums, Totals, angular_momentum_scale};
 use crate::loads::Loads;
 use crate::measure::{self, Matter, Measures};
 use comm::Comm;
@@ -67,7 +67,8 @@ impl Accounts {
     pub fn diagnose(&mut self, comm: &Comm, state: &mut RunState, inputs: TotalsInputs) {
         self.sums.join_extremes(comm, state);
         let totals = self.totals(comm, inputs, state.contact_energy);
-        state.book_totals(totals, inputs.loads.gravity);
+        let turning = angular_momentum_scale(inputs.active.particles, inputs.loads, comm);
+        state.book_totals(totals, turning, inputs.loads.gravity);
     }
 
     /// Chooses the particles that carry gauges, and marks particles by the zones and the sides of witness planes that

@@ -16,7 +16,7 @@ use super::timers::{Phase, Timers};
 use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
     Booked, Leave, LoadState, NumericalFailure, PairState, Passed, Reason, Removed, RunState,
-    Votes, Worst, angular_momentum_scale,
+    Votes, Worst,
 };
 use crate::domain::{Halo, InitialLayout, NestedSlabs, Partition};
 use crate::loads::Loads;
@@ -187,8 +187,7 @@ impl Simulation {
             loads,
         };
         state.initial = accounts.totals(comm, inputs, state.contact_energy);
-        let scale = angular_momentum_scale(particles, loads, comm);
-        state.angular_momentum_scale = Some(scale);
+        state.angular_momentum_scale = Some(0.0);
         state.worst = Worst::default();
         accounts.diagnose(comm, state, inputs);
         state.worst.nearest = None;

@@ -25,7 +25,7 @@ pub struct Approach {
     pub time: f64,
 }
 
-/// All pairs of bodies whose velocities are constant until they meet another.
+/// All pairs of bodies whose velocities are constant until they meet another, in the order of their indices.
 #[must_use]
 pub fn approaches(case: &Case) -> Vec<Approach> {
     let mut found = Vec::new();

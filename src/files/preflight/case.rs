@@ -24,6 +24,18 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             ));
         }
     }
+    let late = approaches
+        .iter()
+        .filter(|pair| pair.time.is_finite() && pair.time >= end);
+    let last = late.max_by(|a, b| a.time.total_cmp(&b.time));
+    if let Some(pair) = last.filter(|_| approaches.iter().any(|pair| pair.time < end)) {
+        let [a, b] = names(pair);
+        messages.push(format!(
+            "`run.end_time` is {}, before `{a}` can reach `{b}` at {}: a verdict on what is struck comes later",
+            seconds(end),
+            seconds(pair.time)
+        ));
+    }
     // Bodies that are driven, fall or meet their mirror images move without an impact.
     let acting = case.load_names().count() - case.loads.absorbers.len();
     let driven = acting > 0;
@@ -115,6 +127,24 @@ pub fn stiffness(case: &Case, messages: &mut Vec<String>) {
             (stiffness / default_stiffness).max(default_stiffness / stiffness),
             if stiffness > default_stiffness { "" } else { "below " },
         ));
+    }
+}
+
+/// Gases without any pressure by which rigid surfaces could push them.
+pub fn soft_gases(case: &Case, messages: &mut Vec<String>) {
+    for (index, body) in case.bodies.iter().enumerate() {
+        let is_held = case
+            .loads
+            .surfaces
+            .iter()
+            .any(|surface| surface.bodies[index]);
+        if is_held && body.rigid.is_none() && case.contact_modulus(body) <= 0.0 {
+            messages.push(format!(
+                "`{}` is a gas without pressure, and rigid surfaces push with a gas's modulus at its reference pressure or \
+                 that of the start: it passes through them; give its `eos.ideal_gas` a `reference_pressure`",
+                body.name
+            ));
+        }
     }
 }
 

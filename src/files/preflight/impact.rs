@@ -2,6 +2,7 @@
 //! where it would tear them.
 
 use super::approach::Approach;
+use exact::hugoniot::{meeting, shock};
 use material::{Coupling, Eos, Material, Strength};
 use model::readable::shown;
 use model::{Body, Case, Shape, SphForm, Vec3};
@@ -38,6 +39,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
         pair,
         closing,
         velocity,
+        pressure,
     } in meetings.flat_map(|pair| shocks(case, pair))
     {
         let [body, partner] = pair;
@@ -76,7 +78,6 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
                 material.name
             ));
         }
-        let pressure = impedance(material) * velocity;
         if case.dimension > 1 && holds_together(material) && pressure > BORNE && !torn[index] {
             torn[index] = true;
             messages.push(format!(
@@ -96,27 +97,30 @@ struct Shock<'a> {
     pair: [&'a Body; 2],
     /// Speed at which they meet (m/s).
     closing: f64,
-    /// Velocity behind the shock (m/s) by acoustic impedances, `u_a = v Z_b/(Z_a + Z_b)`.
+    /// Velocity (m/s) and pressure (Pa) behind the shock, by both Hugoniots.
     velocity: f64,
+    pressure: f64,
 }
 
 /// The shocks in those of two bodies that deform.
-fn shocks<'a>(case: &'a Case, meeting: &Approach) -> impl Iterator<Item = Shock<'a>> {
-    let [a, b] = meeting.bodies.map(|body| &case.bodies[body]);
-    let closing = meeting.speed;
+fn shocks<'a>(case: &'a Case, approach: &Approach) -> impl Iterator<Item = Shock<'a>> {
+    let [a, b] = approach.bodies.map(|body| &case.bodies[body]);
+    let closing = approach.speed;
     let deforming = [[a, b], [b, a]].into_iter();
     let deforming = deforming.filter(|[body, _]| body.rigid.is_none());
     deforming.map(move |pair| {
-        let [z, z_other] = pair.map(|body| impedance(&case.materials[body.material]));
-        let share = if pair[1].rigid.is_some() {
-            1.0
+        let materials = pair.map(|body| &case.materials[body.material]);
+        let behind = if pair[1].rigid.is_some() {
+            shock(materials[0], closing)
         } else {
-            z_other / (z + z_other)
+            let [behind, _] = meeting(materials, closing);
+            behind
         };
         Shock {
             pair,
             closing,
-            velocity: closing * share,
+            velocity: behind.particle_velocity,
+            pressure: behind.pressure,
         }
     })
 }

@@ -64,6 +64,7 @@ pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     surfaces(case, &mut messages);
     meshes::warnings(case, &mut messages);
     case::stiffness(case, &mut messages);
+    case::soft_gases(case, &mut messages);
     case::meetings(case, approaches, &mut messages);
     impact::warnings(case, approaches, &mut messages);
     initial::warnings(case, &mut messages);

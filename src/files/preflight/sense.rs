@@ -117,7 +117,8 @@ fn pairs(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
             if rigid || mode.class().is_none() {
                 continue;
             }
-            let approach = approaches.iter().find(|pair| pair.bodies == [a, b]);
+            let place = approaches.binary_search_by_key(&[a, b], |pair| pair.bodies);
+            let approach = place.ok().map(|place| &approaches[place]);
             // Bodies without a known approach may meet.
             if approach.is_none_or(|pair| pair.time < case.run.end_time) {
                 messages.extend(ratio(body, other));

@@ -15,7 +15,7 @@ use comm::{Comm, Session, abort_job, library};
 use model::Case;
 
 /// Exit code of a program that panicked.
-const EXIT_PANIC: i32 = 101;
+pub const EXIT_PANIC: i32 = 101;
 
 /// The step that this process is in, for the message of a panic.
 pub static STEP: AtomicU64 = AtomicU64::new(0);
@@ -217,11 +217,34 @@ fn start_threads(comm: &Comm, wanted: Option<usize>) {
     }
 }
 
+/// Lets `RAYON_NUM_THREADS` start no more threads than there are cores, in commands without ranks.
+pub fn bound_threads() {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    if let Some(threads) = wanted_by_rayon(cores, true) {
+        // A pool that cannot start fails where it is used, with its reason.
+        let _ = (rayon::ThreadPoolBuilder::new().num_threads(threads)).build_global();
+    }
+}
+
+/// The number of `RAYON_NUM_THREADS`, at most that of the cores; warns where it is more, if this process `tells`.
+fn wanted_by_rayon(cores: usize, tells: bool) -> Option<usize> {
+    let wanted = std::env::var("RAYON_NUM_THREADS")
+        .ok()?
+        .parse::<usize>()
+        .ok()?;
+    if wanted > cores && tells {
+        say::warn(&format!(
+            "warning: RAYON_NUM_THREADS is {wanted}, more than the cores that this process may use: it has {cores} threads"
+        ));
+    }
+    Some(wanted.min(cores))
+}
+
 /// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
 /// otherwise.
 fn default_threads(comm: &Comm, cores: usize) -> usize {
     let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
-    number("RAYON_NUM_THREADS")
+    wanted_by_rayon(cores, comm.is_root())
         .unwrap_or_else(|| {
             let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
             cores / local.max(1)

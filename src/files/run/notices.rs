@@ -50,7 +50,7 @@ impl Notices {
         };
         let percent = 100.0 * error;
         Some(format!(
-            "warning: angular momentum is off by {percent:.1} % at step {}: {help}",
+            "warning: angular momentum is off by {percent:.1} % of the largest so far at step {}: {help}",
             state.step
         ))
     }

@@ -1,11 +1,13 @@
 //! Lines for the user. Each goes out in one call, so that those of two ranks do not mix. A closed pipe
-//! is no reason to end a run. Names, paths and words of the command line may hold control characters,
-//! which never reach the terminal as such.
+//! is no reason to end a run; any other loss of output makes the program fail at its end. Names, paths and words of the
+//! command line may hold control characters, which never reach the terminal as such.
 
-use std::io::Write;
+use std::io::{self, ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use serde_json::{Map, Value};
 
+use super::exit::EXIT_FAILED;
 use super::verbosity::{self, Verbosity};
 use model::readable::{printable, shown};
 
@@ -55,9 +57,39 @@ pub fn warn(text: &str) {
 }
 
 fn out(text: &str) {
-    let mut stdout = std::io::stdout().lock();
-    let _ = stdout.write_all(format!("{text}\n").as_bytes());
-    let _ = stdout.flush();
+    print(&format!("{text}\n"));
+}
+
+/// Prints a text as it is.
+pub fn print(text: &str) {
+    let mut stdout = io::stdout().lock();
+    note_loss(
+        stdout
+            .write_all(text.as_bytes())
+            .and_then(|()| stdout.flush()),
+    );
+}
+
+/// True once output has been lost, other than to a closed pipe.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Notes output that has not been written, with a message the first time.
+pub fn note_loss(written: io::Result<()>) {
+    let Err(error) = written else { return };
+    if error.kind() != ErrorKind::BrokenPipe && !LOST.swap(true, Relaxed) {
+        let text = format!("error: cannot write to the standard output: {error}\n");
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+}
+
+/// The exit code of a program that would have this one: output that is lost is a failure.
+#[must_use]
+pub fn exit_code(code: u8) -> u8 {
+    if code == 0 && LOST.load(Relaxed) {
+        EXIT_FAILED
+    } else {
+        code
+    }
 }
 
 /// A time (s), for people.

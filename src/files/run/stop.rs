@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use signal_hook::consts::{SIGINT, SIGTERM, SIGUSR1, SIGUSR2};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGUSR2, SIGXCPU};
 use signal_hook::flag::{register, register_conditional_shutdown};
 
 use super::exit::EXIT_INTERRUPTED;
@@ -30,17 +30,29 @@ const LOOK_EVERY: Duration = Duration::from_secs(1);
 pub struct Signals(Arc<AtomicBool>);
 
 impl Signals {
-    /// Watches SIGTERM, SIGUSR1, SIGUSR2 and SIGINT from now on; a second SIGINT ends the process.
+    /// Watches the signals that ask a process to end from now on; a second SIGINT ends it. What is ignored, as SIGHUP
+    /// under `nohup`, stays so.
     pub fn watch() -> Self {
         let [asked, interrupted] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
         // Without a handler a signal ends the process, as it would have anyway.
         let _ = register_conditional_shutdown(SIGINT, EXIT_INTERRUPTED, Arc::clone(&interrupted));
         let _ = register(SIGINT, interrupted);
-        for signal in [SIGTERM, SIGUSR1, SIGUSR2, SIGINT] {
-            let _ = register(signal, Arc::clone(&asked));
+        let ignored = ignored();
+        for signal in [SIGTERM, SIGUSR1, SIGUSR2, SIGINT, SIGHUP, SIGXCPU] {
+            if ignored >> (signal - 1) & 1 == 0 {
+                let _ = register(signal, Arc::clone(&asked));
+            }
         }
         Self(asked)
     }
+}
+
+/// The signals that this process ignores, as bits; none where the system does not tell.
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mut lines = status.lines();
+    let bits = lines.find_map(|line| line.strip_prefix("SigIgn:"));
+    bits.map_or(0, |bits| u64::from_str_radix(bits.trim(), 16).unwrap_or(0))
 }
 
 /// Watches for reasons to stop.

@@ -58,6 +58,10 @@ impl EquationOfState for IdealGas {
         self.reference_energy(rho)
     }
 
+    fn modulus_over_pressure(&self) -> Option<[f64; 2]> {
+        Some([self.gamma, self.stiffening_pressure])
+    }
+
     #[inline]
     fn at(&self, _rho0: f64, rho: f64, e: f64) -> PointResponse {
         self.response(rho, e)

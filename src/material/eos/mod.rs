@@ -47,6 +47,12 @@ pub trait EquationOfState: Listed {
         0.0
     }
 
+    /// `[a, b]` of the bulk modulus `a (p + b)` (Pa) of a gas at the pressure p (Pa); none of condensed matter, whose
+    /// modulus is for the most part that of its reference state.
+    fn modulus_over_pressure(&self) -> Option<[f64; 2]> {
+        None
+    }
+
     /// The density (kg/m³) from which pressure is linear up to that of torn matter, for matter of the mean
     /// density `rho`.
     #[inline(always)]
@@ -99,6 +105,14 @@ macro_rules! equations_of_state {
             pub fn reference_energy(&self, rho: f64) -> f64 {
                 match self {
                     $( Self::$law(law) => EquationOfState::reference_energy(law, rho), )+
+                }
+            }
+
+            /// See [`EquationOfState::modulus_over_pressure`].
+            #[must_use]
+            pub fn modulus_over_pressure(&self) -> Option<[f64; 2]> {
+                match self {
+                    $( Self::$law(law) => law.modulus_over_pressure(), )+
                 }
             }
 

@@ -5,6 +5,7 @@ use crate::{Eos, Failure, IdealGas, Strength, Tait, Viscous};
 
 const ATMOSPHERE: &str = "U.S. Standard Atmosphere (1976), sea level";
 const DIATOMIC: &str = "ideal gas of two atoms: γ = 7/5, c_v = R/(γ − 1) with R = 287.053 J/(kg K)";
+const CAVITATES: &str = "no tension: it cavitates";
 const NONE: &str = "none";
 const WATER: &str = "water at 20 °C, c = 1483 m/s: Chaplin, Water structure and science, table of \
      physical properties";
@@ -38,7 +39,7 @@ records! {
                     viscosity: 1.002e-3,
                 }),
             thermal: None,
-            failure: Failure::NONE,
+            failure: Failure::CAVITATES,
         },
-        &[("eos.tait.gamma", COLE), ("", WATER)];
+        &[("eos.tait.gamma", COLE), ("failure", CAVITATES), ("", WATER)];
 }

@@ -19,7 +19,7 @@ records! {
             ("strength", STEINBERG_6061),
             ("", TILLOTSON),
         ];
-    "basalt-tillotson", "basalt to vaporisation":
+    "basalt-tillotson", "basalt to vaporisation, intact rock: of constant strength, without flaws, without friction once it has failed":
         tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [22.7e9, 3.5e9]),
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),

@@ -37,7 +37,7 @@
 //! so that sums cannot give less. Without an end, the volume m/ρ by which a particle counts in its
 //! neighbours' sums grows for ever, and their gradients with it.
 
-use super::failure::{Effect, FAILED, FailureOptions, Molten};
+use super::failure::{Effect, FAILED, FailureOptions};
 use super::principal_tension::largest;
 use super::{Conditions, LANES, Lanes, PointBatch};
 use crate::{at_least, at_most};
@@ -95,16 +95,11 @@ pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
     }
 }
 
-/// Matter at the melting temperature fails as soon as nothing presses it, if the material follows
-/// the temperature.
+/// Matter at the melting temperature fails as soon as nothing presses it.
 #[inline(always)]
 pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {
-    let melting = now.thermal.melting_temperature;
-    let Some(melting) = melting.filter(|_| now.options.molten == Molten::Fails) else {
-        return;
-    };
     for k in 0..LANES {
-        if now.temperature[k] >= melting && point.pressure[k] <= 0.0 {
+        if now.temperature[k] >= now.melting[k] && point.pressure[k] <= 0.0 {
             point.damage[k] = FAILED;
         }
     }

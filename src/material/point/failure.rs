@@ -83,8 +83,8 @@ pub struct FailureOptions {
     pub scatter: f64,
     /// First word of the draws of scatter and flaws.
     pub seed: u32,
-    /// Behaviour of molten material.
-    pub molten: Molten,
+    /// Behaviour of molten material; if it is not said, that of [`Molten::Fails`] where a law follows the temperature.
+    pub molten: Option<Molten>,
     /// Dimension of the model: by it the mass of a particle tells its size.
     pub dimension: u8,
 }
@@ -96,7 +96,7 @@ impl FailureOptions {
         fracture_energy: 0.0,
         scatter: 0.0,
         seed: 1,
-        molten: Molten::Fails,
+        molten: None,
         dimension: 3,
     };
 
@@ -156,13 +156,10 @@ impl FailureOptions {
                 self.seed != default.seed,
                 ("seed", Value::Number(f64::from(self.seed), "")),
             ),
-            (
-                self.molten != default.molten,
-                ("molten", Value::Word(self.molten.name())),
-            ),
         ];
         let given = rows.into_iter().filter(|(differs, _)| *differs);
-        given.map(|(_, row)| row).collect()
+        let molten = self.molten.map(|word| ("molten", Value::Word(word.name())));
+        given.map(|(_, row)| row).chain(molten).collect()
     }
 }
 
@@ -189,6 +186,12 @@ macro_rules! failure_laws {
         impl Failure {
             /// Never.
             pub const NONE: Self = Self { $( $key: None, )+ options: FailureOptions::DEFAULT };
+
+            /// That of a liquid: it cavitates where its pressure would fall below zero, and closes again.
+            pub const CAVITATES: Self = Self {
+                spall: Some(Spall { pressure: 0.0, after: AfterSpall::Hold }),
+                ..Self::NONE
+            };
 
             /// True if the material never fails.
             #[must_use]
@@ -226,7 +229,8 @@ macro_rules! failure_laws {
             /// True if a law follows the temperature.
             #[must_use]
             pub fn needs_temperature(&self) -> bool {
-                false $( || self.$key.is_some_and(|law| law.needs_temperature()) )+
+                self.options.molten == Some(Molten::Fails)
+                    $( || self.$key.is_some_and(|law| law.needs_temperature()) )+
             }
 
             /// True if a law needs the melting temperature of the thermal constants.

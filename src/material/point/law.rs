@@ -88,6 +88,11 @@ pub trait Law: Listed {
         0.0
     }
 
+    /// The law's own melting temperature (K) at the compression `ρ/ρ₀`, if it has one.
+    fn melts_at(&self, _compression: f64) -> Option<f64> {
+        None
+    }
+
     /// Bounds the pressure; `softens` tells whether matter that has reached its strength softens
     /// before it has failed.
     #[inline(always)]
@@ -132,6 +137,8 @@ pub struct Conditions {
     pub temperature: Lanes,
     /// Constants by which temperatures are judged.
     pub thermal: ThermalConstants,
+    /// Temperatures (K) from which on matter is molten and fails; infinite where it does not.
+    pub melting: Lanes,
     /// Shear moduli (Pa): at first those of the reference state.
     pub shear_modulus: Lanes,
     /// Share of the flow stress that is left: at first 1, all of it.
@@ -166,6 +173,7 @@ impl Conditions {
             reference_density,
             temperature: [thermal.reference_temperature; LANES],
             thermal,
+            melting: [f64::INFINITY; LANES],
             shear_modulus: [shear_modulus; LANES],
             softening: [1.0; LANES],
             reference_shear_modulus: shear_modulus,
@@ -245,6 +253,15 @@ macro_rules! strength_laws {
                 match self {
                     Self::None => false,
                     $( Self::$law(_) => $law::NEEDS_MELTING, )+
+                }
+            }
+
+            /// The law's own melting temperature (K) at the compression `ρ/ρ₀`, if it has one.
+            #[must_use]
+            pub fn melts_at(&self, compression: f64) -> Option<f64> {
+                match self {
+                    Self::None => None,
+                    $( Self::$law(law) => law.melts_at(compression), )+
                 }
             }
 

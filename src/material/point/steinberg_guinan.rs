@@ -104,6 +104,10 @@ impl Law for SteinbergGuinan {
         self.yield_stress
     }
 
+    fn melts_at(&self, compression: f64) -> Option<f64> {
+        Some(self.melting_temperature(compression))
+    }
+
     /// Moduli, and the flow stress with them.
     #[inline(never)]
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {

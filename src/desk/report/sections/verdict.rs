@@ -65,7 +65,7 @@ const BOUNDS: [Bound; 8] = [
         what: "energy error",
         most: 5e-3,
         percent: true,
-        words: "≤ 0.5 %",
+        words: "≤ 0.5 % of the largest kinetic energy, or of the work put in",
         source: MAIN_JOB,
     },
     Bound {
@@ -81,7 +81,7 @@ const BOUNDS: [Bound; 8] = [
         what: "momentum error",
         most: 1e-12,
         percent: false,
-        words: "≤ 1e-12",
+        words: "≤ 1e-12 of the largest Σ|m v|, or of the impulse put in",
         source: MAIN_JOB,
     },
     Bound {
@@ -89,7 +89,7 @@ const BOUNDS: [Bound; 8] = [
         what: "angular momentum error",
         most: 1e-2,
         percent: true,
-        words: "≤ 1 %, beyond which a run warns",
+        words: "≤ 1 % of the largest Σ|(x − x̄) × m v|, beyond which a run warns",
         source: OUTPUT,
     },
     Bound {

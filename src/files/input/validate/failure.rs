@@ -6,7 +6,7 @@ use super::laws::law;
 use crate::input::forms::OrNone;
 use crate::input::schema::{FailureParams, failure_laws};
 use crate::input::source::Diagnostic;
-use material::{AfterSpall, Coupling, Effect, Failure, FailureOptions, Law, Strength};
+use material::{AfterSpall, Coupling, Effect, Eos, Failure, FailureOptions, Law, Molten, Strength};
 
 macro_rules! failure {
     ($(
@@ -35,15 +35,23 @@ macro_rules! failure {
 }
 failure_laws!(failure);
 
-/// Failure of a material of a strength: as the table says, and as that of the library's material
-/// where it says nothing.
+/// Failure of a material of an equation of state and a strength: as the table says, and as that of the library's
+/// material where it says nothing. A liquid of which neither says anything cavitates.
 pub fn failure(
     table: Option<&Spanned<OrNone<FailureParams>>>,
     base: Option<&Failure>,
-    strength: &Strength,
+    (eos, strength): (&Eos, &Strength),
     dimension: usize,
 ) -> Result<Failure, Diagnostic> {
-    let base = base.copied().unwrap_or_default();
+    let without = if is_liquid(eos, strength) {
+        Failure::CAVITATES
+    } else {
+        Failure::NONE
+    };
+    let base = base
+        .copied()
+        .filter(|base| !base.is_none())
+        .unwrap_or(without);
     let mut failure = match table.map(Spanned::get_ref) {
         None => base,
         Some(OrNone::None) => Failure::NONE,
@@ -61,6 +69,15 @@ pub fn failure(
     Ok(failure)
 }
 
+/// True for what has no stiffness in shear and is held together by the cold part of its pressure.
+fn is_liquid(eos: &Eos, strength: &Strength) -> bool {
+    strength.shear_modulus() == 0.0
+        && (matches!(eos, Eos::Tait(_)) || matches!(strength, Strength::Viscous(_)))
+        && eos
+            .modulus_over_pressure()
+            .is_none_or(|[_, offset]| offset > 0.0)
+}
+
 /// Common options of the laws.
 fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, Diagnostic> {
     let base = failure.options;
@@ -74,7 +91,8 @@ fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, 
         molten: params
             .molten
             .as_ref()
-            .map_or(base.molten, |word| *word.get_ref()),
+            .map(|word| *word.get_ref())
+            .or(base.molten),
         ..base
     };
     // What fades says so by itself.
@@ -121,6 +139,13 @@ fn check(
         .fracture_energy
         .as_ref()
         .map_or_else(|| table.span(), Spanned::span);
+    if let Some(word) = &params.molten
+        && *word.get_ref() == Molten::Fails
+        && !failure.has_memory()
+    {
+        let title = "matter that holds at its largest tension never fails, molten or not";
+        return Err(Diagnostic::new(word.span(), title));
+    }
     if options.softens() {
         if failure.grady_kipp.is_some() {
             let title =

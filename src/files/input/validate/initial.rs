@@ -14,7 +14,7 @@ use model::{Body, Case, Heat, Initial, Place, Profile, Vec3};
 use populate;
 
 /// Bodies with more particles are looked at on a wider lattice; each particle is as the run begins.
-const MOST_PLACES: u64 = 100_000;
+pub const MOST_PLACES: u64 = 100_000;
 
 /// A velocity as it is typed.
 pub type VelocityParams = Spanned<Vec<Spanned<ProfileParams<Velocity>>>>;
@@ -214,7 +214,7 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
 }
 
 /// Place of a key of a body, or of its name.
-fn key_span(table: &Spanned<BodyParams>, key: &str) -> Range<usize> {
+pub fn key_span(table: &Spanned<BodyParams>, key: &str) -> Range<usize> {
     let params = table.get_ref();
     let span = match key {
         "velocity" => params.velocity.as_ref().map(Spanned::span),

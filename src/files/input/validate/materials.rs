@@ -12,7 +12,7 @@ use crate::input::forms::Named;
 use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
 use crate::input::source::Diagnostic;
-use material::{Eos, Material, Thermal, ThermalConstants, library};
+use material::{Eos, Material, Molten, Thermal, ThermalConstants, library};
 
 /// Names and materials in the order of the input.
 pub fn materials(
@@ -68,7 +68,7 @@ fn material(
         &eos,
     )?;
     let (given, known) = (params.failure.as_ref(), base.map(|b| &b.failure));
-    let failure = failure(given, known, &strength, dimension)?;
+    let failure = failure(given, known, (&eos, &strength), dimension)?;
     let material = Material {
         name: name.get_ref().clone(),
         reference_density,
@@ -104,11 +104,20 @@ fn missing_heat(material: &Material) -> Option<&'static str> {
     let melting = |thermal: &Thermal| thermal.constants().melting_temperature.is_some();
     match &material.thermal {
         None if material.needs_temperature() => Some("thermal.specific_heat"),
+        Some(_) if melts_unknown(material) => Some("thermal.melting_temperature"),
         Some(thermal) if material.needs_melting() && !melting(thermal) => {
             Some("thermal.melting_temperature")
         }
         _ => None,
     }
+}
+
+/// True if molten matter is to fail, and nothing says when the material melts.
+fn melts_unknown(material: &Material) -> bool {
+    material.failure.options.molten == Some(Molten::Fails)
+        && material
+            .melting_temperature(material.reference_density)
+            .is_none()
 }
 
 /// Thermal constants, with the cold curve of this material's own equation of state.

@@ -3,6 +3,7 @@
 #[macro_use]
 pub(super) mod check;
 mod absorbers;
+mod across;
 mod bodies;
 mod contact;
 mod defaults;
@@ -121,6 +122,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     total::resolve(case, &params.body)?;
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
+    across::check(case, params)?;
     check_moduli(case, &params.body)?;
     check_overlaps(case, &params.body)
 }
@@ -132,7 +134,7 @@ fn may_tear(bodies: &[Body], materials: &[Material]) -> bool {
     materials.clone().all(|m| m.p_wave_modulus() > 0.0) && materials.any(|m| m.failure.has_memory())
 }
 
-/// Contact scales with a modulus, which a gas has only at a reference pressure.
+/// Contact scales with a modulus, which a gas has only at a pressure: of its reference state or of the start.
 fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     for (a, (body, table)) in case.bodies.iter().zip(params).enumerate() {
         let material = &case.materials[body.material];
@@ -143,7 +145,7 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagn
                 case.contact_between(a, b).class().is_some()
             }
         };
-        if material.p_wave_modulus() == 0.0 && (0..case.bodies.len()).any(pushes) {
+        if case.contact_modulus(body) == 0.0 && (0..case.bodies.len()).any(pushes) {
             let title = format!(
                 "the gas `{}` has no modulus that contact could scale with",
                 material.name
