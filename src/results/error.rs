@@ -140,7 +140,8 @@ pub enum OutputError {
     },
     /// A file of another run than the folder's.
     #[error(
-        "{} is of the run {run}, and {} holds the run {own}: two runs have written there; move away what is          not of the one you want",
+        "{} is of the run {run}, and {} holds the run {own}: two runs have written there; move away what is \
+         not of the one you want",
         path.display(),
         folder.display()
     )]

@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use crate::PlotError;
-use results::regular;
-use results::{Opener, Sheet};
+use results::{Opener, Sheet, regular};
 
 /// Longest file that is read as a table (bytes).
 const LONGEST: u64 = 4_000_000_000;
