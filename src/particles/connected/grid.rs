@@ -94,11 +94,13 @@ impl Grid {
     }
 
     /// Number of cubes that have places.
+    #[must_use]
     pub fn cubes(&self) -> usize {
         self.cubes.len()
     }
 
     /// The places of a cube, by its number.
+    #[must_use]
     pub fn members(&self, cube: usize) -> std::ops::Range<usize> {
         let end = self.cubes.get(cube + 1);
         let end = end.map_or(self.places.len(), |next| next.1 as usize);
@@ -111,6 +113,7 @@ impl Grid {
         clippy::cast_sign_loss,
         reason = "saturates, and is limited"
     )]
+    #[must_use]
     pub fn cube(&self, position: &[f64; 3]) -> [u64; 3] {
         let index = |a: usize| ((position[a] - self.lowest[a]) * self.per_width) as u64;
         [0, 1, 2].map(|a| index(a).min(LAST))
@@ -141,6 +144,7 @@ fn key([x, y, z]: [u64; 3]) -> u64 {
 
 /// The square of the distance of two positions (m²).
 #[inline]
+#[must_use]
 pub fn distance_squared(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     let r = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     r[0] * r[0] + r[1] * r[1] + r[2] * r[2]
@@ -149,6 +153,7 @@ pub fn distance_squared(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 impl Place {
     /// True if two places are linked.
     #[inline]
+    #[must_use]
     pub fn is_linked(&self, other: &Self) -> bool {
         let range = self.reach + other.reach;
         let distance = distance_squared(&self.position, &other.position);

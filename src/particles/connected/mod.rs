@@ -55,7 +55,7 @@ fn join(grid: &Grid, cube: usize, sets: &Sets) {
                 .iter()
                 .filter(|other| place.is_linked(other));
             linked.for_each(|other| {
-                sets.join(number(place.image.slot()), number(other.image.slot()))
+                sets.join(number(place.image.slot()), number(other.image.slot()));
             });
         }
     });
