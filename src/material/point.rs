@@ -79,6 +79,8 @@ macro_rules! point_fields {
             id: Id, Known;
             /// Mass (kg).
             mass: Scalar, Known;
+            /// Mean plastic strain of the neighbours.
+            neighbour_strain: Scalar, Known;
             /// Pressure, compression positive (Pa).
             pressure: Scalar, Answer;
             /// Longitudinal sound speed (m/s).

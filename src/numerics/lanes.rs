@@ -58,10 +58,15 @@ pub trait Lanes: Copy {
     fn less_than(self, other: Self) -> u8;
 }
 
+/// A loop, since what array methods call may be compiled apart from the vector code.
 macro_rules! each_lane {
-    ($k:ident => $value:expr) => {
-        Self(std::array::from_fn(|$k| $value))
-    };
+    ($k:ident => $value:expr) => {{
+        let mut lanes = [0.0; LANES];
+        for $k in 0..LANES {
+            lanes[$k] = $value;
+        }
+        Self(lanes)
+    }};
 }
 
 impl Lanes for F64x8 {

@@ -110,6 +110,8 @@ bitflags! {
         const FRICTION = 1 << 3;
         /// Before a snapshot.
         const SHOWN = 1 << 4;
+        /// With the motion, if materials ask for plastic strains about them.
+        const STRAIN = 1 << 5;
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }
@@ -173,6 +175,8 @@ bitflags! {
         const TOTAL = 1 << 26;
         /// Contact of gases, whose stiffness follows their pressure.
         const GAS_CONTACT = 1 << 27;
+        /// Materials that soften where deformation localises.
+        const LOCALISED = 1 << 28;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

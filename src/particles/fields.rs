@@ -119,9 +119,9 @@ particle_fields! {
     /// Deviatoric stress, tension positive.
     deviatoric_stress: Symmetric,         "Pa",     State,    STRESS,         Default,  -;
     /// Equivalent plastic strain.
-    plastic_strain: Scalar,               "",       State,    -,              Default,  -, kept;
+    plastic_strain: Scalar,               "",       State,    STRAIN,         Default,  -, kept;
     /// Damage: below one intact, one failed.
-    damage: Scalar,                       "",       State,    -,              IfHeld,   FAILURE;
+    damage: Scalar,                       "",       State,    STRAIN,         IfHeld,   FAILURE;
     /// Elastic energy that tension and shear held when the matter failed.
     failure_energy: Scalar,               "J/kg",   State,    -,              OnDemand, FAILURE;
     /// How far matter that softens before it fails is on its way to the onset of that.
@@ -231,6 +231,8 @@ particle_fields! {
     contact_stiffening: Scalar,           "",       Scratch,  CONTACT,        OnDemand, GAS_CONTACT;
     /// Contact energy.
     contact_energy: Scalar,               "J",      Scratch,  -,              OnDemand, CONTACT;
+    /// Mean plastic strain of the neighbours without its linear part, for materials that soften where it localises.
+    neighbour_strain: Scalar,             "",       Scratch,  -,              OnDemand, LOCALISED;
     /// Largest approach speed towards a neighbour, for the time step.
     approach_speed: Scalar,               "m/s",    Scratch,  -,              OnDemand, -;
     /// Stiffness of contact, for the time step.

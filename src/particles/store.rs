@@ -115,6 +115,16 @@ impl ParticleStore {
         }
     }
 
+    /// What halo particles get with their motion.
+    #[must_use]
+    pub fn motion_phase(&self) -> HaloPhase {
+        if self.unused.contains(Owner::LOCALISED) {
+            HaloPhase::MOTION
+        } else {
+            HaloPhase::MOTION | HaloPhase::STRAIN
+        }
+    }
+
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;

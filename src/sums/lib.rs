@@ -14,6 +14,7 @@ pub mod limiter;
 pub mod linear_fit;
 pub mod mid_step;
 pub mod momentum;
+pub mod neighbour_mean;
 pub mod neighbourhood;
 pub mod normalised;
 pub mod principal;

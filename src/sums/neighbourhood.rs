@@ -223,6 +223,13 @@ pub(crate) fn gather<V: Lanes, R>(records: &[&R; LANES], number: impl Fn(&R) -> 
     V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
 }
 
+/// The value at each of eight places.
+#[inline(always)]
+pub(crate) fn gather_at<V: Lanes>(places: &[u32; LANES], value: impl Fn(usize) -> f64) -> V {
+    let at = |k: usize| value(places[k] as usize);
+    V::read(&[at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7)])
+}
+
 /// `N` numbers of each of eight records.
 #[inline(always)]
 pub(crate) fn gather_all<V: Lanes, R, const N: usize>(

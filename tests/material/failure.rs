@@ -565,6 +565,81 @@ fn coupled_damage_softens_and_then_takes_the_fracture_energy() {
     }
 }
 
+/// A metal that hardens and softens where it localises, a millimetre in size.
+fn localising() -> Material {
+    let law = VonMises {
+        shear_modulus: G,
+        yield_stress: YIELD,
+        hardening_modulus: 1e9,
+    };
+    let mut metal = material(RHO, linear(K), Strength::VonMises(law));
+    let mut localised = ductile([1.0, 0.0, 0.0, 0.0, 0.0]);
+    localised.coupling = Coupling::Localised;
+    metal.failure.johnson_cook = Some(localised);
+    metal.failure.options.fracture_energy = 2e6;
+    metal.failure.options.effect = Effect::Scaled;
+    metal
+}
+
+/// Localised damage leaves the strength as it is before the maximum of `(1 − ε/ε_f)(Y₀ + H ε)`, and in a shear band
+/// the fracture energy rules from there on, less what the particle has taken.
+#[test]
+fn localised_damage_takes_the_fracture_energy_in_a_band() {
+    let metal = localising();
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * 1e-9; LANES];
+    let mut l = Matrix3::zeros();
+    l[(0, 1)] = 1e4;
+    let dt = 2e-9;
+    let (mut work, mut onset) = (0.0, None);
+    while points.damage[0] < 1.0 {
+        points.neighbour_strain = [0.8 * points.plastic_strain[0]; LANES];
+        let before = stress(&points)[(0, 1)];
+        step(&metal, &mut points, &l, dt);
+        if onset.is_some() {
+            work += 0.5 * (before + stress(&points)[(0, 1)]) * 1e4 * dt;
+        } else if points.failure_onset[0] >= 1.0 {
+            onset = Some(points.plastic_strain[0]);
+        } else {
+            assert_eq!(points.damage[0], 0.0);
+        }
+        assert!(work < 1e12);
+    }
+    let peak = 0.5 * (1.0 - YIELD / 1e9);
+    assert!((onset.unwrap() / peak - 1.0).abs() < 1e-3, "{onset:?}");
+    let left = 2e6 - 1e-3 * (YIELD + 1e9 * peak) * peak;
+    let part = 1e-3 * work / left;
+    assert!((part - 1.0).abs() < 0.01, "{part}");
+}
+
+/// What flows as its neighbours do, without turning, or pulled keeps its strength to the failure strain, and fails there at
+/// once.
+#[test]
+fn what_does_not_localise_fails_at_once() {
+    let metal = localising();
+    let mut shear = Matrix3::zeros();
+    shear[(0, 1)] = 1e4;
+    let opening = Matrix3::from_diagonal(&[0.5e4, -0.5e4, 0.0].into());
+    let pulled = shear + Matrix3::from_diagonal(&[20.0, 20.0, 20.0].into());
+    for (l, ridge) in [(shear, 1.0), (opening, 2.0), (pulled, 2.0)] {
+        let mut points = batch(RHO, 0.0);
+        points.mass = [RHO * 1e-9; LANES];
+        if l == pulled {
+            points.density = [0.98 * RHO; LANES];
+        }
+        while points.damage[0] == 0.0 {
+            let strain = points.plastic_strain[0];
+            points.neighbour_strain = [strain / ridge; LANES];
+            step(&metal, &mut points, &l, 2e-9);
+            let strength = YIELD + 1e9 * points.plastic_strain[0];
+            assert!(points.damage[0] > 0.0 || equivalent(&points) < 1.001 * strength);
+            assert!(strain < 1.1);
+        }
+        assert_eq!(points.damage[0], 1.0);
+        assert!((points.plastic_strain[0] - 1.0).abs() < 1e-3);
+    }
+}
+
 /// What has failed has neither cohesion nor friction, and resists being made smaller: sheared under
 /// pressure it has no shear stress, pulled no tension, pressed all of the pressure.
 #[test]

@@ -223,13 +223,15 @@ fn stop_and_restart_on_other_ranks() {
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
 }
 
-/// Ductile damage that softens and scatters, cracks from drawn flaws, and lost tension: mass, damage,
+/// Ductile damage that softens and scatters or softens in bands alone, cracks from drawn flaws, and lost tension: mass, damage,
 /// flaws and fragments on any ranks, and through restarts in the middle of the break-up.
 #[test]
 fn failure_on_any_ranks_and_through_restarts() {
     let ductile = "material.aluminium.failure={ spall.pressure = \"-1.2 GPa\", \
         johnson_cook = { d1 = 0.13, d2 = 0.13, d3 = -1.5, d4 = 0.011 }, \
         fracture_energy = \"10 kJ/m^2\", scatter = 20 }";
+    let localised = "material.aluminium.failure={ johnson_cook = { d1 = 0.3, d2 = 0, d3 = 0, coupling = \"localised\" }, \
+        fracture_energy = \"1 kJ/m^2\" }";
     let flaws = "material.aluminium.failure={ grady_kipp = { k = \"1e32/m^3\", m = 9 }, seed = 3 }";
     let tension = "material.aluminium.failure={ principal_stress.limit = \"1 GPa\", effect = \"tension_lost\" }";
     let elastic = "material.aluminium.strength={ elastic = { shear_modulus = \"28.6 GPa\" } }";
@@ -241,6 +243,12 @@ fn failure_on_any_ranks_and_through_restarts() {
             ductile,
             yielding,
             fields("\"failure_onset\", \"plastic_strain\""),
+        ),
+        (
+            "localised",
+            localised,
+            yielding,
+            fields("\"failure_onset\", \"neighbour_strain\""),
         ),
         ("flaws", flaws, elastic, fields("\"flaws\"")),
         (

@@ -9,7 +9,7 @@ fn fragments(s: &Simulation, body: u32, reach: f64) -> usize {
     let of_body = |&i: &usize| s.particles.body[i] == body;
     let particles = (0..s.particles.owned()).filter(of_body);
     let points: Vec<[f64; 3]> = particles.map(|i| s.particles.position[i]).collect();
-    engine::fragments::components(&points, reach).len()
+    particles::connected::components(&points, reach).len()
 }
 
 /// Mean velocity of a body along x (m/s).

@@ -4,7 +4,7 @@
 use crate::physics_support::bars::{axial_stress, interface_force};
 use crate::physics_support::{inline, median, ready, run_to, run_with, start};
 use crate::shocks::impact;
-use engine::fragments::components;
+use particles::connected::components;
 use engine::step::Simulation;
 use exact::finite_strain::Medium;
 

@@ -77,7 +77,7 @@ impl Halo {
         }
     }
 
-    /// Decides who needs whom and starts to send [`HaloPhase::MOTION`]. A pair of particles
+    /// Decides who needs whom and starts to send their motion. A pair of particles
     /// interacts within the sum of their `reach` (m); nobody needs inactive particles. Collective.
     pub fn post_motion(
         &mut self,
@@ -97,9 +97,10 @@ impl Halo {
         self.find_peers(comm, reaches);
         self.choose(active, &reach);
         let (chosen, store) = (&self.chosen, active.particles);
+        let phase = store.motion_phase();
         fill(&mut self.exchange, |k, message| {
             message.extend_from_slice(&chosen.mirror_masks[chosen.of(k)]);
-            store.pack(HaloPhase::MOTION, &chosen.particles[chosen.of(k)], message);
+            store.pack(phase, &chosen.particles[chosen.of(k)], message);
         });
         self.exchange.post_sizes(comm);
         self.exchange.post(comm);
@@ -109,7 +110,8 @@ impl Halo {
     /// their images behind planes.
     pub fn finish_motion(&mut self, particles: &mut ParticleStore) {
         self.exchange.wait();
-        let size = 1 + particles.bytes_per_particle(HaloPhase::MOTION);
+        let phase = particles.motion_phase();
+        let size = 1 + particles.bytes_per_particle(phase);
         self.received.clear();
         for k in 0..self.exchange.peers() {
             self.received.push(self.exchange.incoming(k).len() / size);
@@ -117,7 +119,7 @@ impl Halo {
         particles.resize_halo(self.received.iter().sum());
         let (exchange, received) = (&self.exchange, &self.received);
         let (peers, first) = (exchange.incoming_all(), particles.owned());
-        particles.unpack_all(HaloPhase::MOTION, first, received, |k| {
+        particles.unpack_all(phase, first, received, |k| {
             &peers[k].incoming()[received[k]..]
         });
         let lower = (0..exchange.peers()).filter(|&k| exchange.rank(k) < self.rank);

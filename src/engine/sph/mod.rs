@@ -8,6 +8,7 @@
 mod formulation;
 mod hourglass_update;
 mod material_update;
+mod neighbour_strain;
 mod phase;
 mod recording;
 mod rest;

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::formulation::{
     Conventional, Corrected, Formulation, Normalised, StressPoints, TotalBodies,
 };
+use super::neighbour_strain;
 use super::rest::Resting;
 use super::shared::Sums;
 use super::signal::Signals;
@@ -30,6 +31,8 @@ pub struct Sph {
     pub smoothing: Smoothing,
     form: Form,
     sums: Sums,
+    /// Plastic strains of images, where materials ask for those of neighbours.
+    strains: Vec<f64>,
 }
 
 enum Form {
@@ -92,6 +95,7 @@ impl Sph {
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },
             sums: Sums::new(case, &Kernel::new(case.dimension)),
+            strains: Vec::new(),
         }
     }
 
@@ -201,6 +205,16 @@ impl Sph {
     /// The first sweep: velocity gradient at the end of the step, density and stress from its mean
     /// with the gradient at the start, of owned particles; and what they show for pair terms.
     pub fn rates(&mut self, particles: &mut ParticleStore, lists: &Lists, step: &Step) {
+        let mut strains = std::mem::take(&mut self.strains);
+        for lists in self
+            .total()
+            .map(TotalBodies::lists)
+            .into_iter()
+            .chain([lists])
+        {
+            neighbour_strain::find(&mut strains, &self.sums, particles, lists);
+        }
+        self.strains = strains;
         let sums = &mut self.sums;
         with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
         sums.terms.prepare(particles, step.dt);
@@ -281,6 +295,7 @@ impl Sph {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.sums.memory() + with_form!(&self.form, form => form.memory())
+        let strains = size_of::<f64>() * self.strains.capacity();
+        self.sums.memory() + strains + with_form!(&self.form, form => form.memory())
     }
 }

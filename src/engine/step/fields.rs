@@ -10,6 +10,7 @@ use particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
 pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let sph = &case.sph;
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
+    let localises = case.materials.iter().any(|m| m.failure.localises());
     let used = [
         (Owner::LOADS, driven),
         (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),
@@ -21,6 +22,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::SURFACE_FRICTION, case.loads.has_friction()),
         (Owner::FAILURE, case.may_fail()),
         (Owner::SOFTENING, case.fails_with("failure_onset")),
+        (Owner::LOCALISED, localises),
         (Owner::TOTAL, case.bodies.iter().any(|body| body.total)),
         (Owner::FLAWS, case.fails_with("flaws")),
         (Owner::YIELD, case.may_yield()),
@@ -67,7 +69,7 @@ pub fn store_of(case: &Case) -> ParticleStore {
 pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
     let (contact, store) = (ContactTable::new(case), store_of(case));
     let mut messages = vec![
-        1 + store.bytes_per_particle(HaloPhase::MOTION),
+        1 + store.bytes_per_particle(store.motion_phase()),
         store.bytes_per_particle(contact.halo) + Sph::bytes_shown(case),
     ];
     if contact.has_friction() {

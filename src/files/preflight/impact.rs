@@ -73,8 +73,8 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             plugs[index] = true;
             messages.push(format!(
                 "{meeting} with a blunt nose, and `{}` keeps all of its strength until it has failed: no plug \
-                 shears out of it as soon as it should; give it `failure.johnson_cook.coupling = \"coupled\"` and \
-                 a `failure.fracture_energy`",
+                 shears out of it as soon as it should; give it `failure.johnson_cook.coupling = \"localised\"` \
+                 and a `failure.fracture_energy`",
                 material.name
             ));
         }
@@ -179,7 +179,7 @@ fn extent(shape: &Shape, along: usize) -> Option<Vec3> {
 /// Returns true for a material that fails by plastic flow, which takes nothing of its strength before.
 fn keeps_its_strength(material: &Material) -> bool {
     let failure = &material.failure;
-    let coupled = |law: &material::JohnsonCookFailure| law.coupling == Coupling::Coupled;
+    let coupled = |law: &material::JohnsonCookFailure| law.coupling != Coupling::Uncoupled;
     let fails = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
     fails && !failure.johnson_cook.as_ref().is_some_and(coupled)
 }

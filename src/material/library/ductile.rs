@@ -5,7 +5,7 @@ use super::alloys::{AL_5083, AL_7075, TI_6AL_4V, WELDOX_460E};
 use super::metal::{jc, jc_of_rate};
 use super::metals::{AL_2024, AL_6061, COPPER, STEEL_4340};
 use super::{Parts, heat};
-use crate::{AfterSpall, Coupling, Failure, JohnsonCookFailure, RateForm, Spall};
+use crate::{AfterSpall, Coupling, Effect, Failure, JohnsonCookFailure, RateForm, Spall};
 
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const STEINBERG: &str =
@@ -29,6 +29,7 @@ const LESUER: &str = "Lesuer (2000), DOT/FAA/AR-00/25; not checked against the r
 const BORVIK: &str = "Børvik et al. (2001, 2002), Eur. J. Mech. A 20, 685 and Int. J. Impact Eng. 27, \
      37; their (1 + ε̇*)^C is taken as 1 + C ln ε̇*";
 const BORVIK_FAILURE: &str = "Børvik et al. (2001), Eur. J. Mech. A 20, 685; in 2002 D₄ is -.015";
+const BAND: &str = "fitted to plugs of two shots of Børvik et al. (1999), Int. J. Impact Eng. 22, 855";
 const CLAUSEN: &str = "Clausen et al. (2004), Mater. Sci. Eng. A 364, 260, plates of 5083-H116; not \
      checked against the paper";
 const BRAR: &str = "Brar, Joshi & Harris (2009), AIP Conf. Proc. 1195, 945, of 7075-T651; not checked \
@@ -140,11 +141,16 @@ records! {
             if let Some(law) = &mut steel.failure.johnson_cook {
                 law.reference_rate = 5e-4;
                 law.rate_form = RateForm::Power;
+                law.coupling = Coupling::Localised;
             }
+            steel.failure.options.fracture_energy = 500e3;
+            steel.failure.options.effect = Effect::Scaled;
             steel
         },
         sources!(
             BORVIK_FAILURE, SHEAR_460E, LIKE_4340, BORVIK,
+            "failure.fracture_energy": BAND,
+            "failure.effect": BAND,
             "eos.mie_gruneisen.b": CONSTANT_GAMMA
         );
     "titanium-6al-4v-ductile", "titanium Ti-6Al-4V, Johnson-Cook strength and failure":

@@ -226,6 +226,14 @@ macro_rules! failure_laws {
                     && (false $( || self.$key.is_some_and(|law| law.asks_hardening()) )+)
             }
 
+            /// True if matter softens where deformation localises: a law asks for the plastic strain of the neighbours.
+            #[inline(always)]
+            #[must_use]
+            pub fn localises(&self) -> bool {
+                self.options.softens()
+                    && (false $( || self.$key.is_some_and(|law| law.localises()) )+)
+            }
+
             /// True if a law follows the temperature.
             #[must_use]
             pub fn needs_temperature(&self) -> bool {

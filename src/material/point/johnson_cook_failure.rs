@@ -34,13 +34,26 @@
 //! with the share χ of plastic work that is heat and the specific heat c. From there on a
 //! `fracture_energy` G rules, less what one size L of the particle has taken by then, `L (1 − D) Y ε`, so that a
 //! band costs about the same at any spacing. `failure_onset` holds `G/(G − L (1 − D) Y ε)` from then on.
+//!
+//! **Localised damage** takes nothing of the strength before the maximum, and beyond it in shear bands alone. A band is a
+//! ridge of plastic strain: its particles have flowed at least 1.15 times as far as their neighbours on the mean, without
+//! the linear part of the field, since a hole that opens is a slope. It is sheared: the square of its spin is at
+//! least half of that of its strain rate. And it is closed: the triaxiality is at most 1/3, beyond which voids grow (Bao &
+//! Wierzbicki 2004, *On fracture locus in the equivalent strain and stress triaxiality space*, Int. J. Mech. Sci. 46, 81).
+//! What has not localised keeps its strength to D = 1, where it fails at once.
 
 use serde::Deserialize;
 
 use super::radial_return::equivalent_stress;
-use super::{Conditions, LANES, Law, PointBatch};
+use super::{Conditions, FAILED, LANES, Law, PointBatch};
 use crate::{ThermalConstants, at_least};
 
+/// Plastic strain over the mean of the neighbours' in a shear band, at least.
+const RIDGE: f64 = 1.15;
+/// Square of the spin over that of the strain rate in a shear band, at least: one in simple shear, zero where a hole opens.
+const SHEAR: f64 = 0.5;
+/// Largest triaxiality of a shear band, that of uniaxial tension: beyond, voids grow.
+const CLOSED: f64 = 1.0 / 3.0;
 /// Triaxiality below which nothing is damaged.
 const CUT_OFF: f64 = -1.0 / 3.0;
 /// Least share of a fracture energy that is left at the onset of softening.
@@ -79,6 +92,8 @@ pub enum Coupling {
     Uncoupled,
     /// `1 − D` of it.
     Coupled,
+    /// Nothing before deformation localises; what the fracture energy leaves from there on.
+    Localised,
 }
 
 impl Coupling {
@@ -88,6 +103,7 @@ impl Coupling {
         match self {
             Self::Uncoupled => "uncoupled",
             Self::Coupled => "coupled",
+            Self::Localised => "localised",
         }
     }
 }
@@ -162,14 +178,40 @@ impl JohnsonCookFailure {
         strain * now.options.strain_factor(point.id[k])
     }
 
+    /// True if deformation of lane k localises in a shear band: it has flowed farther than its neighbours, it turns as much as
+    /// it is strained, and tension is not what opens it.
+    #[inline(always)]
+    fn is_band(point: &PointBatch, k: usize) -> bool {
+        let l = |c: usize| point.velocity_gradient[c][k];
+        let (mut strain, mut spin) = (0.0, 0.0);
+        for a in [0, 4, 8] {
+            strain += l(a) * l(a);
+        }
+        // Twice the squares of each off-diagonal component.
+        for (a, b) in [(1, 3), (2, 6), (5, 7)] {
+            let (sum, difference) = (l(a) + l(b), l(a) - l(b));
+            strain += 0.5 * sum * sum;
+            spin += 0.5 * difference * difference;
+        }
+        point.plastic_strain[k] > RIDGE * point.neighbour_strain[k]
+            && spin > SHEAR * strain
+            && -point.pressure[k] <= CLOSED * equivalent_stress(point, k)
+    }
+
     /// Lane by lane: only what flows is damaged.
     #[inline(never)]
     fn soften_flow(&self, point: &mut PointBatch, now: &Conditions) {
+        let is_coupled = self.coupling == Coupling::Coupled;
         for k in 0..LANES {
             if now.plastic_increment[k] > 0.0 && point.failure_onset[k] < 1.0 {
                 let damage = at_least(point.damage[k], point.failure_onset[k]);
-                point.damage[k] = damage;
-                if (1.0 - damage) * now.hardening[k] * self.strain_of(point, k, now) < 1.0 {
+                if is_coupled {
+                    point.damage[k] = damage;
+                }
+                let hardens = (1.0 - damage) * now.hardening[k];
+                if hardens * self.strain_of(point, k, now) < 1.0
+                    && (is_coupled || Self::is_band(point, k))
+                {
                     let energy = now.options.fracture_energy;
                     let taken =
                         now.size(point, k) * equivalent_stress(point, k) * point.plastic_strain[k];
@@ -208,22 +250,32 @@ impl Law for JohnsonCookFailure {
     /// Lane by lane: only what flows is damaged.
     #[inline(never)]
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
+        let localises = self.localises() && now.options.softens();
         for k in 0..LANES {
             let increment = now.plastic_increment[k];
             if increment > 0.0 {
+                let before = point.damage[k];
                 point.damage[k] += increment / self.strain_of(point, k, now);
+                // Where matter softens, this is its way to the onset, and what has not localised has no softening.
+                if localises && before < FAILED && point.damage[k] >= FAILED {
+                    point.failure_onset[k] = FAILED;
+                }
             }
         }
     }
 
     fn asks_hardening(&self) -> bool {
-        self.coupling == Coupling::Coupled
+        self.coupling != Coupling::Uncoupled
+    }
+
+    fn localises(&self) -> bool {
+        self.coupling == Coupling::Localised
     }
 
     /// Coupled damage before the strength is at its maximum, and the onset of softening there.
     #[inline(always)]
     fn open(&self, point: &mut PointBatch, now: &Conditions) {
-        if self.coupling == Coupling::Coupled {
+        if self.coupling != Coupling::Uncoupled {
             self.soften_flow(point, now);
         }
     }

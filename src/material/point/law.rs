@@ -68,6 +68,12 @@ pub trait Law: Listed {
         false
     }
 
+    /// True if the law asks for the plastic strain of the neighbours.
+    #[inline(always)]
+    fn localises(&self) -> bool {
+        false
+    }
+
     /// Contradiction of constants that are each within their range.
     fn contradiction(&self) -> Option<Contradiction> {
         None

@@ -232,7 +232,7 @@ macro_rules! failure_laws {
                 least_strain: Spanned<f64> = 0.01, Positive;
                 /// Mean tension at which the least strain is enough.
                 spall_stress: Placed<Pressure> = "0", NotNegative => "no such stress";
-                /// Whether damage takes its share of the strength before the material has failed.
+                /// Share of the strength that damage takes before failure: none, its own, or that in shear bands.
                 coupling: Spanned<Coupling> = Coupling::Uncoupled;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.

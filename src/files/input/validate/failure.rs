@@ -96,7 +96,7 @@ fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, 
         ..base
     };
     // What fades says so by itself.
-    let coupled = (failure.johnson_cook).is_some_and(|law| law.coupling == Coupling::Coupled);
+    let coupled = (failure.johnson_cook).is_some_and(|law| law.coupling != Coupling::Uncoupled);
     let fades = options.softens() || coupled || failure.grady_kipp.is_some();
     options.effect = match &params.effect {
         Some(effect) if fades && *effect.get_ref() != Effect::Scaled => {
@@ -145,6 +145,13 @@ fn check(
     {
         let title = "matter that holds at its largest tension never fails, molten or not";
         return Err(Diagnostic::new(word.span(), title));
+    }
+    let localised = (failure.johnson_cook).is_some_and(|law| law.coupling == Coupling::Localised);
+    if localised && !options.softens() {
+        return Err(Diagnostic::new(
+            table.span(),
+            "what softens where it localises takes a `fracture_energy`",
+        ));
     }
     if options.softens() {
         if failure.grady_kipp.is_some() {
