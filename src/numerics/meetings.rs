@@ -160,7 +160,7 @@ mod tests {
         (0..count)
             .map(|k| {
                 let lower = [7919, 104_729, 1_299_709].map(|factor| spread(k, factor, 997));
-                let size = 5.0 + spread(k, 31, 40);
+                let size = 60.0 + 4.0 * spread(k, 31, 40);
                 let speed = if k % 3 == 0 { 0.0 } else { 1.0 };
                 MovingBox {
                     extent: (lower, lower.map(|x| x + size)),

@@ -24,6 +24,8 @@ pub trait Decomposition {
 pub struct NestedSlabs {
     axes: [usize; 3],
     levels: usize,
+    /// How the first level cuts space.
+    first: Cut,
     /// The face between ranks r and r + 1 (m) at place r; ascending among those that cut the same
     /// slab. A point on a face belongs to the slab above.
     faces: Vec<f64>,
@@ -97,7 +99,7 @@ impl Slab {
 }
 
 /// A slab with more ranks than one, and how they are shared out among its parts: those with one rank more come first.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Cut {
     slab: Slab,
     parts: usize,
@@ -199,6 +201,7 @@ impl NestedSlabs {
         let slabs = Self {
             axes,
             levels,
+            first: Slab::whole(faces.len() + 1, levels).cut(),
             faces,
         };
         debug_assert!(slabs.are_sorted(slabs.whole()));
@@ -211,6 +214,7 @@ impl NestedSlabs {
         let mut slabs = Self {
             axes,
             levels,
+            first: Slab::whole(faces.len() + 1, levels).cut(),
             faces,
         };
         slabs.sort(slabs.whole());
@@ -226,6 +230,7 @@ impl NestedSlabs {
     /// Becomes [`Self::on_first`] for so many ranks in place.
     pub(super) fn reset(&mut self, axes: [usize; 3], levels: usize, ranks: usize) {
         (self.axes, self.levels) = (axes, levels);
+        self.first = Slab::whole(ranks, levels).cut();
         self.faces.clear();
         self.faces.resize(ranks - 1, f64::INFINITY);
     }
@@ -285,12 +290,14 @@ impl NestedSlabs {
     /// further.
     #[inline]
     pub(super) fn slab_at(&self, position: &[f64; 3], cuts: usize) -> Slab {
-        let mut slab = self.whole();
-        for &axis in &self.axes[..cuts] {
+        let (mut slab, mut cut) = (self.whole(), self.first);
+        for (level, &axis) in self.axes[..cuts].iter().enumerate() {
             if !slab.is_cut() {
                 break;
             }
-            let cut = slab.cut();
+            if level > 0 {
+                cut = slab.cut();
+            }
             slab = cut.part(cut.part_at(position[axis], &self.faces));
         }
         slab
