@@ -1,6 +1,6 @@
 //! Parameters of every pair of size classes of particles, computed once at set-up.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
@@ -96,7 +96,7 @@ impl ContactTable {
     #[must_use]
     pub fn of_kinds(case: &Case) -> Self {
         let named = |body: usize| case.contacts.iter().any(|pair| pair.bodies.contains(&body));
-        let mut seen: HashMap<_, u32> = HashMap::new();
+        let mut seen: BTreeMap<_, u32> = BTreeMap::new();
         let kept = case.bodies.iter().enumerate().filter(|(index, body)| {
             let own = named(*index).then_some(*index);
             let soft = case.contact_modulus(body) > 0.0;
