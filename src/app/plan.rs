@@ -356,12 +356,13 @@ pub fn file_lines(files: &Files, machine: &Machine) -> Vec<String> {
     let many = |count: f64, word: &str| counted(count as u64, word);
     vec![
         format!(
-            "{} of {}; {} of {}, of which {} stay",
+            "{} of {}; {} of {}, of which {} stay; tables of {}",
             many(files.snapshots, "snapshot"),
             size(files.snapshot),
             many(files.checkpoints, "checkpoint"),
             size(files.checkpoint),
             short(files.kept),
+            size(files.tables),
         ),
         format!(
             "{} on the disk at the end; {} to write all, at {} a second",

@@ -8,6 +8,7 @@ mod absorber;
 mod axis;
 mod beginning;
 mod body;
+mod closing_speeds;
 mod cloud;
 mod contact;
 mod control;
@@ -35,6 +36,7 @@ pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
 pub use body::{Body, Lattice, LatticeKind};
+pub use closing_speeds::ClosingSpeeds;
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
@@ -215,9 +217,7 @@ impl Case {
     /// none.
     #[must_use]
     pub fn impact_speed(&self) -> f64 {
-        let bodies = 0..self.bodies.len();
-        let pairs = bodies.clone().flat_map(|a| (0..a).map(move |b| [a, b]));
-        let speed = pairs.fold(0.0, |most: f64, [a, b]| most.max(self.closing_speed(a, b)));
+        let speed = ClosingSpeeds::new(self).largest();
         if speed > 0.0 {
             return speed;
         }
@@ -226,7 +226,7 @@ impl Case {
             let largest = velocities.fold(0.0, |most: f64, velocity| most.max(velocity.norm()));
             largest + self.bodies[body].initial.velocity_spread
         };
-        bodies.map(largest).fold(0.0, f64::max)
+        (0..self.bodies.len()).map(largest).fold(0.0, f64::max)
     }
 
     /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin

@@ -1,6 +1,6 @@
 //! The configuration whose neighbours the sums of a body are over.
 
-use super::{Case, ContactMode, Quantity, SmoothingLength, SphForm};
+use super::{Case, ClosingSpeeds, ContactMode, Quantity, SmoothingLength, SphForm};
 use serde::Deserialize;
 
 /// Speed of bodies against each other, over the longitudinal sound speed, up to which the total form is the default: what
@@ -25,7 +25,6 @@ impl Case {
     #[must_use]
     pub fn total_obstacle(&self, body: usize) -> Option<&'static str> {
         let (sph, own) = (&self.sph, &self.bodies[body]);
-        let mut others = (0..self.bodies.len()).filter(|&other| other != body);
         let terms = sph.artificial_stress > 0.0 || sph.xsph > 0.0 || sph.conduction > 0.0;
         let obstacles = [
             (own.rigid.is_some(), "it is rigid"),
@@ -46,7 +45,7 @@ impl Case {
                 "artificial stress, conduction, XSPH and the Balsara switch need the neighbours of each step",
             ),
             (
-                others.any(|b| matches!(self.contact_between(body, b), ContactMode::Kernel)),
+                self.is_joined(body),
                 "`kernel` contact needs the neighbours of each step",
             ),
             (
@@ -62,20 +61,34 @@ impl Case {
         first.map(|(_, why)| why)
     }
 
+    /// True if `kernel` contact joins a body with another.
+    fn is_joined(&self, body: usize) -> bool {
+        let joins = |mode: &ContactMode| matches!(mode, ContactMode::Kernel);
+        if joins(&self.default_contact) {
+            let mut others = (0..self.bodies.len()).filter(|&other| other != body);
+            return others.any(|other| joins(self.contact_between(body, other)));
+        }
+        let mut pairs = self.contacts.iter();
+        pairs.any(|pair| pair.bodies.contains(&body) && joins(&pair.mode))
+    }
+
     /// True if a body flows, slowly: its material yields, and nothing meets the body faster than a
-    /// tenth of its longitudinal sound speed, as far as the case says, and it does not deform faster either.
+    /// tenth of its longitudinal sound speed, as far as the case with these speeds says, and it does not deform faster
+    /// either.
     #[must_use]
-    pub fn flows_slowly(&self, body: usize) -> bool {
+    pub fn flows_slowly(&self, body: usize, speeds: &ClosingSpeeds) -> bool {
         let own = &self.bodies[body];
-        let others = 0..self.bodies.len();
-        let closing = others.map(|other| self.closing_speed(body, other));
         let outside = if self.loads.surfaces.is_empty() && self.symmetry.is_empty() {
             0.0
         } else {
             own.velocity.norm()
         };
-        let speed = closing.fold(outside + own.speed_spread(), f64::max);
         let material = &self.materials[own.material];
-        material.strength.yields() && speed <= SLOW * material.longitudinal_speed()
+        let (slow, spread) = (SLOW * material.longitudinal_speed(), own.speed_spread());
+        let is_slow = || {
+            let velocities = self.known_velocities(body);
+            outside + spread <= slow && !speeds.exceed(body, &velocities, spread, slow)
+        };
+        material.strength.yields() && is_slow()
     }
 }

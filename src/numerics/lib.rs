@@ -13,6 +13,7 @@ pub mod kernel;
 pub mod lane_matrix;
 pub mod lanes;
 pub mod matrix;
+pub mod meetings;
 pub mod ordered;
 pub mod principal;
 pub mod vector;

@@ -36,6 +36,7 @@ impl Brick {
 
     /// `true` if nothing is inside.
     #[must_use]
+    #[inline]
     pub fn is_empty(&self) -> bool {
         (0..3).any(|a| self.lower[a] >= self.upper[a])
     }

@@ -20,7 +20,7 @@ mod tally;
 mod touch;
 
 pub use brick::Brick;
-pub use overlap::{Overlap, overlap};
+pub use overlap::{Overlap, close_pairs, overlap, surroundings};
 pub use sample::sample;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
 pub use touch::{touching_distance, touching_value};

@@ -1,7 +1,9 @@
 //! The initial overlap of two bodies.
 
-use super::{Wanted, search};
-use model::{Body, Case, Vec3};
+use super::{Wanted, bounds, search};
+use model::{Body, Case, ContactMode, Vec3};
+use numerics::extent::Extent;
+use numerics::meetings::{MovingBox, meetings};
 
 /// Bodies in touch have their outermost particles a mean spacing apart, somewhat less where curved
 /// faces follow a lattice; closer ones overlap (spacings).
@@ -16,6 +18,40 @@ pub struct Overlap {
     pub depth: f64,
     /// A particle there (m).
     pub at: [f64; 3],
+}
+
+/// The box of the particles of a body (m), wider by twice its coarsest spacing: what shapes reach beyond their
+/// particles, and half of what is near between two. `None` without particles.
+#[must_use]
+pub fn surroundings(body: &Body, dimension: usize) -> Option<Extent> {
+    let near = 2.0 * body.lattice.coarsest();
+    let (lower, upper) = bounds(body, dimension)?;
+    Some((lower.map(|x| x - near), upper.map(|x| x + near)))
+}
+
+/// The pairs of bodies that would push each other if they began within each other, and may, in the order of their
+/// indices.
+#[must_use]
+pub fn close_pairs(case: &Case) -> Vec<[usize; 2]> {
+    let bodies = case.bodies.iter().enumerate();
+    let (indices, boxes): (Vec<usize>, Vec<MovingBox>) = bodies
+        .filter_map(|(index, body)| {
+            let still = MovingBox {
+                extent: surroundings(body, case.dimension)?,
+                velocity: [0.0; 3],
+            };
+            Some((index, still))
+        })
+        .unzip();
+    let pairs = meetings(&boxes, 0.0, usize::MAX).unwrap_or_default();
+    let pairs = pairs
+        .into_iter()
+        .map(|pair| pair.map(|place| indices[place]));
+    let sees = |&[a, b]: &[usize; 2]| {
+        !matches!(case.contact_between(a, b), ContactMode::None)
+            && [a, b].iter().any(|&body| case.bodies[body].rigid.is_none())
+    };
+    pairs.filter(sees).collect()
 }
 
 /// By how much two bodies begin within each other; nothing for bodies in touch or apart.

@@ -19,6 +19,7 @@ mod input_meshes;
 mod input_particles;
 mod input_shapes;
 mod input_surfaces;
+mod many_bodies;
 mod measures;
 mod output_checkpoint;
 mod output_compare;

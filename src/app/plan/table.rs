@@ -110,6 +110,7 @@ pub fn document(source: &Source, machine: &Machine, rows: &[Row], files: &Files)
         "checkpoints": files.checkpoints,
         "checkpoint_bytes": files.checkpoint,
         "kept_checkpoints": files.kept,
+        "table_bytes": files.tables,
         "disk_bytes": files.disk(),
         "written_bytes": files.written(),
         "writing_s": files.written() / machine.disk_bandwidth,

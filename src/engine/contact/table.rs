@@ -1,8 +1,10 @@
 //! Parameters of every pair of size classes of particles, computed once at set-up.
 
+use std::collections::BTreeMap;
+
 use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
-use model::{Body, Case, ContactMode, SelfContact};
+use model::{Body, Case, ContactMode, ContactPair, SelfContact};
 use numerics::kernel::{Kernel, SUPPORT};
 use particles::neighbours::{ForeignTable, Groups, SizeClasses};
 use particles::{HaloPhase, Owner, ParticleStore};
@@ -87,6 +89,37 @@ impl ContactTable {
             table.owners |= Owner::FRICTION;
         }
         table
+    }
+
+    /// Table of two bodies of each kind that contact tells apart, which has the needs of that of all: fields, messages and
+    /// friction.
+    #[must_use]
+    pub fn of_kinds(case: &Case) -> Self {
+        let named = |body: usize| case.contacts.iter().any(|pair| pair.bodies.contains(&body));
+        let mut seen: BTreeMap<_, u32> = BTreeMap::new();
+        let kept = case.bodies.iter().enumerate().filter(|(index, body)| {
+            let own = named(*index).then_some(*index);
+            let soft = case.contact_modulus(body) > 0.0;
+            let kind = (own, body.material, body.rigid.is_some(), soft);
+            let count = seen.entry(kind).or_default();
+            *count += 1;
+            *count <= 2
+        });
+        let kept: Vec<usize> = kept.map(|(index, _)| index).collect();
+        if kept.len() == case.bodies.len() {
+            return Self::new(case);
+        }
+        // What is named is kept.
+        let place = |body: &usize| kept.partition_point(|kept| kept < body);
+        let contacts = case.contacts.iter().map(|pair| ContactPair {
+            bodies: pair.bodies.each_ref().map(place),
+            mode: pair.mode.clone(),
+        });
+        Self::new(&Case {
+            contacts: contacts.collect(),
+            bodies: kept.iter().map(|&body| case.bodies[body].clone()).collect(),
+            ..case.clone()
+        })
     }
 
     /// Adds the next pair.

@@ -128,10 +128,7 @@ impl Balance {
     fn descend(&mut self) {
         let cut = self.slabs.len();
         for place in 0..cut {
-            let slab = self.slabs[place];
-            let parts = slab.parts();
-            self.slabs
-                .extend((0..parts).map(|part| slab.part(part, parts)));
+            self.slabs.extend(self.slabs[place].cut().all());
         }
         self.slabs.drain(..cut);
     }
@@ -182,8 +179,9 @@ pub(super) fn split_slab(
 ) {
     let ranks = slab.ranks();
     let (first, all) = (below(ranks.start), below(ranks.end) - below(ranks.start));
-    let parts = slab.places().map(|face| (below(face + 1) - first) / all);
-    let mut places = slab.places();
+    let mut places = slab.cut().places();
+    let parts = slab.cut().places();
+    let parts = parts.map(|face| (below(face + 1) - first) / all);
     histogram.split(place, parts, |face| {
         let place = places.next().expect("a place for each face");
         faces[place] = face;

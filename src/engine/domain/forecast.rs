@@ -126,10 +126,8 @@ impl Forecast {
         let [lower, upper] = planes[axis];
         let (start, ranks) = (below(lower), slab.ranks());
         let each = (below(upper) - start) / as_number(ranks.len() as u64);
-        let parts = slab.parts();
         let mut part_lower = lower;
-        for part in 0..parts {
-            let part = slab.part(part, parts);
+        for part in slab.cut().all() {
             let wanted = start + each * as_number((part.ranks().end - ranks.start) as u64);
             let part_upper = if part.ranks().end == ranks.end {
                 upper

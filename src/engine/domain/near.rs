@@ -39,20 +39,15 @@ impl NestedSlabs {
             emit(slab.ranks().start);
             return;
         }
-        let (axis, parts) = (self.axis_of(slab), slab.parts());
+        let (axis, cut) = (self.axis_of(slab), slab.cut());
         let [lower, upper] = within.ends(axis);
-        for part in slab.part_at(lower, parts, self.faces())..parts {
+        for part in cut.part_at(lower, self.faces())..cut.parts() {
             let mut brick = brick;
-            if part > 0 {
-                brick.lower[axis] = self.faces()[slab.start(part, parts) - 1];
-            }
-            if part + 1 < parts {
-                brick.upper[axis] = self.faces()[slab.start(part + 1, parts) - 1];
-            }
+            cut.narrow(&mut brick, axis, part, self.faces());
             if brick.lower[axis] > upper {
                 break;
             }
-            self.descend((slab.part(part, parts), brick), within, emit);
+            self.descend((cut.part(part), brick), within, emit);
         }
     }
 }

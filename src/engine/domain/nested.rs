@@ -24,6 +24,8 @@ pub trait Decomposition {
 pub struct NestedSlabs {
     axes: [usize; 3],
     levels: usize,
+    /// How the first level cuts space.
+    first: Cut,
     /// The face between ranks r and r + 1 (m) at place r; ascending among those that cut the same
     /// slab. A point on a face belongs to the slab above.
     faces: Vec<f64>,
@@ -53,62 +55,128 @@ impl Slab {
         self.first..self.end
     }
 
+    /// How the next level cuts it.
+    #[inline(always)]
+    pub(super) fn cut(self) -> Cut {
+        let (ranks, parts) = (self.end - self.first, self.parts());
+        Cut {
+            slab: self,
+            parts,
+            each: ranks / parts,
+            more: ranks % parts,
+        }
+    }
+
     /// Number of slabs into which the next level cuts it: of its last level one for each rank, else
     /// the smallest that, if all levels cut as often, is enough for its ranks.
-    pub(super) fn parts(&self) -> usize {
+    #[inline(always)]
+    fn parts(&self) -> usize {
         let ranks = self.end - self.first;
-        if self.levels == 1 {
-            return ranks;
-        }
-        let power = u32::try_from(self.levels).unwrap_or(1);
-        let is_enough = |n: usize| n.checked_pow(power).is_none_or(|all| all >= ranks);
-        let (mut least, mut enough) = (1, ranks.max(1));
-        while least < enough {
-            let middle = usize::midpoint(least, enough);
-            if is_enough(middle) {
-                enough = middle;
-            } else {
-                least = middle + 1;
+        match self.levels {
+            2 if ranks > 0 => (ranks - 1).isqrt() + 1,
+            3 => {
+                #[allow(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_precision_loss,
+                    clippy::cast_sign_loss,
+                    reason = "a first guess"
+                )]
+                let mut parts = libm::cbrt(ranks as f64) as usize;
+                while parts * parts * parts < ranks {
+                    parts += 1;
+                }
+                parts.max(1)
             }
+            _ => ranks,
         }
-        enough
-    }
-
-    /// The first rank of a part of so many, from 0 on; beyond the last part the end.
-    pub(super) fn start(&self, part: usize, parts: usize) -> usize {
-        let ranks = self.end - self.first;
-        let (each, more) = (ranks / parts, ranks % parts);
-        self.first + part * each + part.min(more)
-    }
-
-    /// A part of so many.
-    pub(super) fn part(&self, part: usize, parts: usize) -> Self {
-        Self {
-            first: self.start(part, parts),
-            end: self.start(part + 1, parts),
-            levels: self.levels - 1,
-        }
-    }
-
-    /// The places of the faces between its parts.
-    pub(super) fn places(self) -> impl ExactSizeIterator<Item = usize> {
-        let parts = self.parts();
-        (1..parts).map(move |part| self.start(part, parts) - 1)
     }
 
     /// True if it is cut: it has more ranks than one.
+    #[inline(always)]
     pub(super) fn is_cut(&self) -> bool {
         self.levels > 0 && self.end - self.first > 1
     }
+}
 
-    /// Index of the part of so many, between these faces (m), that holds a coordinate.
-    #[inline]
-    pub(super) fn part_at(&self, x: f64, parts: usize, faces: &[f64]) -> usize {
-        let (mut least, mut end) = (0, parts - 1);
+/// A slab with more ranks than one, and how they are shared out among its parts: those with one rank more come first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cut {
+    slab: Slab,
+    parts: usize,
+    /// Ranks of a part at least, and parts with one more.
+    each: usize,
+    more: usize,
+}
+
+impl Cut {
+    /// Number of parts.
+    #[inline(always)]
+    pub(super) fn parts(&self) -> usize {
+        self.parts
+    }
+
+    /// The first rank of a part, from 0 on; beyond the last part the end.
+    #[inline(always)]
+    fn start(&self, part: usize) -> usize {
+        self.slab.first + part * self.each + part.min(self.more)
+    }
+
+    /// A part.
+    #[inline(always)]
+    pub(super) fn part(&self, part: usize) -> Slab {
+        Slab {
+            first: self.start(part),
+            end: self.start(part + 1),
+            levels: self.slab.levels - 1,
+        }
+    }
+
+    /// All parts.
+    pub(super) fn all(self) -> impl Iterator<Item = Slab> {
+        (0..self.parts).map(move |part| self.part(part))
+    }
+
+    /// The part of a rank.
+    fn part_of(&self, rank: usize) -> usize {
+        let within = rank - self.slab.first;
+        let longer = self.more * (self.each + 1);
+        if within < longer {
+            within / (self.each + 1)
+        } else {
+            self.more + (within - longer) / self.each
+        }
+    }
+
+    /// The place of the face below a part, which is not the first.
+    #[inline(always)]
+    fn place(&self, part: usize) -> usize {
+        self.start(part) - 1
+    }
+
+    /// The places of the faces between the parts.
+    pub(super) fn places(self) -> impl ExactSizeIterator<Item = usize> {
+        (1..self.parts).map(move |part| self.place(part))
+    }
+
+    /// Sets the ends of a part along an axis in the box of the slab, between these faces (m).
+    #[inline(always)]
+    pub(super) fn narrow(&self, brick: &mut Brick, axis: usize, part: usize, faces: &[f64]) {
+        if part > 0 {
+            brick.lower[axis] = faces[self.place(part)];
+        }
+        if part + 1 < self.parts {
+            brick.upper[axis] = faces[self.place(part + 1)];
+        }
+    }
+
+    /// Index of the part, between these faces (m), that holds a coordinate.
+    #[inline(always)]
+    pub(super) fn part_at(&self, x: f64, faces: &[f64]) -> usize {
+        let (mut least, mut end) = (0, self.parts - 1);
         // The first part whose upper face is above.
         while least < end {
             let middle = usize::midpoint(least, end);
-            if faces[self.start(middle + 1, parts) - 1] <= x {
+            if faces[self.place(middle + 1)] <= x {
                 least = middle + 1;
             } else {
                 end = middle;
@@ -133,6 +201,7 @@ impl NestedSlabs {
         let slabs = Self {
             axes,
             levels,
+            first: Slab::whole(faces.len() + 1, levels).cut(),
             faces,
         };
         debug_assert!(slabs.are_sorted(slabs.whole()));
@@ -145,6 +214,7 @@ impl NestedSlabs {
         let mut slabs = Self {
             axes,
             levels,
+            first: Slab::whole(faces.len() + 1, levels).cut(),
             faces,
         };
         slabs.sort(slabs.whole());
@@ -160,6 +230,7 @@ impl NestedSlabs {
     /// Becomes [`Self::on_first`] for so many ranks in place.
     pub(super) fn reset(&mut self, axes: [usize; 3], levels: usize, ranks: usize) {
         (self.axes, self.levels) = (axes, levels);
+        self.first = Slab::whole(ranks, levels).cut();
         self.faces.clear();
         self.faces.resize(ranks - 1, f64::INFINITY);
     }
@@ -219,13 +290,15 @@ impl NestedSlabs {
     /// further.
     #[inline]
     pub(super) fn slab_at(&self, position: &[f64; 3], cuts: usize) -> Slab {
-        let mut slab = self.whole();
-        for &axis in &self.axes[..cuts] {
+        let (mut slab, mut cut) = (self.whole(), self.first);
+        for (level, &axis) in self.axes[..cuts].iter().enumerate() {
             if !slab.is_cut() {
                 break;
             }
-            let parts = slab.parts();
-            slab = slab.part(slab.part_at(position[axis], parts, &self.faces), parts);
+            if level > 0 {
+                cut = slab.cut();
+            }
+            slab = cut.part(cut.part_at(position[axis], &self.faces));
         }
         slab
     }
@@ -234,22 +307,22 @@ impl NestedSlabs {
         if !slab.is_cut() {
             return;
         }
-        let mut faces: Vec<f64> = slab.places().map(|place| self.faces[place]).collect();
+        let cut = slab.cut();
+        let mut faces: Vec<f64> = cut.places().map(|place| self.faces[place]).collect();
         faces.sort_by(f64::total_cmp);
-        for (place, face) in slab.places().zip(faces) {
+        for (place, face) in cut.places().zip(faces) {
             self.faces[place] = face;
         }
-        let parts = slab.parts();
-        (0..parts).for_each(|part| self.sort(slab.part(part, parts)));
+        cut.all().for_each(|part| self.sort(part));
     }
 
     fn are_sorted(&self, slab: Slab) -> bool {
         if !slab.is_cut() {
             return true;
         }
-        let parts = slab.parts();
-        slab.places().map(|place| self.faces[place]).is_sorted()
-            && (0..parts).all(|part| self.are_sorted(slab.part(part, parts)))
+        let cut = slab.cut();
+        cut.places().map(|place| self.faces[place]).is_sorted()
+            && cut.all().all(|part| self.are_sorted(part))
     }
 }
 
@@ -263,19 +336,10 @@ impl Decomposition for NestedSlabs {
         let mut slab = self.whole();
         while slab.is_cut() {
             let axis = self.axis_of(slab);
-            let parts = slab.parts();
-            // Parts with one rank more come first, so this is where it is or just below.
-            let mut part = (rank - slab.first) / (slab.end - slab.first).div_ceil(parts);
-            while slab.start(part + 1, parts) <= rank {
-                part += 1;
-            }
-            if part > 0 {
-                brick.lower[axis] = self.faces[slab.start(part, parts) - 1];
-            }
-            if part + 1 < parts {
-                brick.upper[axis] = self.faces[slab.start(part + 1, parts) - 1];
-            }
-            slab = slab.part(part, parts);
+            let cut = slab.cut();
+            let part = cut.part_of(rank);
+            cut.narrow(&mut brick, axis, part, &self.faces);
+            slab = cut.part(part);
         }
         brick
     }
@@ -298,10 +362,8 @@ mod tests {
 
     /// Ranks of the slabs that a slab of so many levels is cut into.
     fn shares(ranks: usize, levels: usize) -> Vec<usize> {
-        let whole = Slab::whole(ranks, levels);
-        let parts = whole.parts();
-        let shares = (0..parts).map(|part| whole.part(part, parts).ranks().len());
-        shares.collect()
+        let parts = Slab::whole(ranks, levels).cut().all();
+        parts.map(|part| part.ranks().len()).collect()
     }
 
     #[test]
@@ -360,9 +422,8 @@ mod tests {
             let mut lone = Vec::new();
             while let Some(slab) = slabs.pop() {
                 if slab.is_cut() {
-                    places.extend(slab.places());
-                    let parts = slab.parts();
-                    slabs.extend((0..parts).map(|part| slab.part(part, parts)));
+                    places.extend(slab.cut().places());
+                    slabs.extend(slab.cut().all());
                 } else {
                     prop_assert_eq!(slab.ranks().len(), 1);
                     lone.push(slab.first);

@@ -59,7 +59,7 @@ fn records(case: &Case) -> Owner {
 #[must_use]
 pub fn store_of(case: &Case) -> ParticleStore {
     let mut particles = ParticleStore::default();
-    particles.drop_fields(unused_fields(case, &ContactTable::new(case)));
+    particles.drop_fields(unused_fields(case, &ContactTable::of_kinds(case)));
     particles
 }
 
@@ -67,7 +67,7 @@ pub fn store_of(case: &Case) -> ParticleStore {
 /// its images; its fields for the forces; its friction, if there is any.
 #[must_use]
 pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
-    let (contact, store) = (ContactTable::new(case), store_of(case));
+    let (contact, store) = (ContactTable::of_kinds(case), store_of(case));
     let mut messages = vec![
         1 + store.bytes_per_particle(store.motion_phase()),
         store.bytes_per_particle(contact.halo) + Sph::bytes_shown(case),
@@ -82,7 +82,7 @@ pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
 /// to a halo particle with its messages.
 #[must_use]
 pub fn bytes_of_options(case: &Case) -> [usize; 2] {
-    let contact = ContactTable::new(case);
+    let contact = ContactTable::of_kinds(case);
     let unused = unused_fields(case, &contact) | Owner::CONTACT;
     let fields = || rows(FieldInfo::is_optional).filter(|field| field.is_held_without(unused));
     let owned: usize = fields().map(|field| field.kind.bytes()).sum();

@@ -42,6 +42,13 @@ impl Marks {
         Self::new(steps, Some(run.end_time / f64::from(count)))
     }
 
+    /// About how often they are met in so many steps to a time (s).
+    #[allow(clippy::cast_precision_loss, reason = "an estimate")]
+    fn count(&self, steps: f64, end: f64) -> f64 {
+        let by_steps = self.steps.map_or(0.0, |every| steps / every as f64);
+        (by_steps.floor() + self.time.count(end)).min(steps)
+    }
+
     fn are_met(&self, step: u64, before: f64, now: f64) -> bool {
         let by_steps = self.steps.is_some_and(|every| step.is_multiple_of(every));
         by_steps || self.time.is_due(before, now)
@@ -64,6 +71,13 @@ impl RowSchedule {
                 bodies: Marks::evenly(&case.run, BODIES),
             },
         }
+    }
+
+    /// About how many rows are due in so many steps to a time (s), that of the start with them, and how many of those have
+    /// bodies too.
+    #[must_use]
+    pub fn counts(&self, steps: f64, end: f64) -> [f64; 2] {
+        [self.rows, self.bodies].map(|marks| 1.0 + marks.count(steps, end))
     }
 
     /// Returns true if a row is due after a step of this number from time `before` to time `now` (s).

@@ -18,6 +18,12 @@ impl Schedule {
         }
     }
 
+    /// Number of due times up to one (s), but for zero.
+    #[must_use]
+    pub fn count(&self, end: f64) -> f64 {
+        self.every.map_or(0.0, |every| passed(every, end))
+    }
+
     /// Returns true if a step from time `before` to time `now` (s) reaches or passes a due time.
     #[must_use]
     pub fn is_due(&self, before: f64, now: f64) -> bool {

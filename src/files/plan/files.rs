@@ -1,5 +1,6 @@
 //! Sizes and numbers of a run's files.
 
+use super::tables;
 use crate::output::OutputError;
 use crate::output::snapshot::{Plan, bytes_per_particle};
 use engine::step::store_of;
@@ -21,6 +22,8 @@ pub struct Files {
     pub checkpoints: f64,
     /// Number of checkpoints kept.
     pub kept: f64,
+    /// Bytes of tables.
+    pub tables: f64,
 }
 
 impl Files {
@@ -48,19 +51,23 @@ impl Files {
             checkpoint: particles * store.bytes_per_particle(Life::State) as f64,
             checkpoints,
             kept: checkpoints.min(output.checkpoints_kept as f64),
+            tables: tables::bytes(case, steps),
         })
     }
 
     /// Bytes on the disk at the end.
     #[must_use]
     pub fn disk(&self) -> f64 {
-        self.snapshots * self.snapshot + self.further + self.kept * self.checkpoint
+        self.snapshots * self.snapshot + self.further + self.kept * self.checkpoint + self.tables
     }
 
     /// Bytes written in all.
     #[must_use]
     pub fn written(&self) -> f64 {
-        self.snapshots * self.snapshot + self.further + self.checkpoints * self.checkpoint
+        self.snapshots * self.snapshot
+            + self.further
+            + self.checkpoints * self.checkpoint
+            + self.tables
     }
 }
 

@@ -128,7 +128,11 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
     let each = particles.positions.len() as f64 / ranks as f64;
     let positions = particles.positions.as_slice();
     let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
+    let mut last = (Vec::new(), 0.0);
     let most = works.map(|work| {
+        if work == last.0 {
+            return last.1;
+        }
         balance.cut(
             &Comm::solo(),
             &mut slabs,
@@ -141,7 +145,8 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
             owned[owner].fetch_add(1, Relaxed);
         });
         let most = owned.iter_mut().map(|owned| *owned.get_mut()).max();
-        most.unwrap_or(0) as f64 / each
+        last = (work, most.unwrap_or(0) as f64 / each);
+        last.1
     });
     most.fold(UNEVEN, f64::max)
 }

@@ -10,6 +10,7 @@ mod particles;
 mod rough;
 mod row;
 mod sharing;
+mod tables;
 mod weak;
 
 pub use files::Files;

@@ -1,12 +1,17 @@
 //! Times at which bodies meet, from their initial velocities.
 
 use model::{Body, Case, Vec3};
+use numerics::meetings::{MovingBox, meetings};
 use populate::{self, Wanted, search};
 
 /// Bodies closer than this many spacings touch.
 const TOUCH: f64 = 0.1;
 /// Most steps of a body towards another; each goes as far as no contact is possible.
 const MOST_STEPS: usize = 200;
+
+/// Pairs of bodies that are followed for each body at most, as if there were so many bodies at least.
+const MOST_OF_EACH: usize = 16;
+const FEW: usize = 1000;
 
 /// Smallest and largest coordinates (m) of a body's particles.
 pub(super) type Ends = ([f64; 3], [f64; 3]);
@@ -16,8 +21,7 @@ pub(super) type Ends = ([f64; 3], [f64; 3]);
 pub struct Approach {
     /// Their indices.
     pub bodies: [usize; 2],
-    /// Initial gap between them, beyond that of touching bodies, in mean spacings; may be infinite if they
-    /// never come near.
+    /// Initial gap between them, beyond that of touching bodies, in mean spacings.
     pub gap: f64,
     /// Their relative speed (m/s).
     pub speed: f64,
@@ -25,20 +29,37 @@ pub struct Approach {
     pub time: f64,
 }
 
-/// All pairs of bodies whose velocities are constant until they meet another, in the order of their indices.
+/// The pairs of bodies that may meet with velocities that are constant until then, in the order of their indices.
+/// Of very many, those that may by the end of the run, or by a part of it.
 #[must_use]
 pub fn approaches(case: &Case) -> Vec<Approach> {
-    let mut found = Vec::new();
-    let bodies = case.bodies.iter();
-    let boxes: Vec<_> = bodies
-        .map(|body| populate::bounds(body, case.dimension))
+    let straight = (0..case.bodies.len()).filter(|&body| flies_straight(case, body));
+    let (indices, boxes): (Vec<usize>, Vec<MovingBox>) = straight
+        .filter_map(|index| {
+            let body = &case.bodies[index];
+            let moving = MovingBox {
+                extent: populate::surroundings(body, case.dimension)?,
+                velocity: body.velocity.into(),
+            };
+            Some((index, moving))
+        })
+        .unzip();
+    let most = MOST_OF_EACH * indices.len().max(FEW);
+    let end = case.run.end_time;
+    let untils = [f64::INFINITY, end, end / 16.0, end / 256.0];
+    let pairs = untils
+        .into_iter()
+        .find_map(|until| meetings(&boxes, until, most));
+    let pairs = pairs.or_else(|| meetings(&boxes, 0.0, usize::MAX));
+    let ends: Vec<Option<Ends>> = indices
+        .iter()
+        .map(|&index| populate::bounds(&case.bodies[index], case.dimension))
         .collect();
-    for a in 0..case.bodies.len() {
-        for b in a + 1..case.bodies.len() {
-            found.extend(approach(case, &boxes, [a, b]));
-        }
-    }
-    found
+    let of_pair = |places: [usize; 2]| {
+        let bodies = places.map(|place| indices[place]);
+        approach(case, [ends[places[0]]?, ends[places[1]]?], bodies)
+    };
+    pairs.into_iter().flatten().filter_map(of_pair).collect()
 }
 
 /// Returns true if a body has one velocity, which nothing but other bodies changes.
@@ -51,28 +72,28 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
     !(driven || table || falls || spreads)
 }
 
-fn approach(case: &Case, boxes: &[Option<Ends>], [a, b]: [usize; 2]) -> Option<Approach> {
-    let [first, second] = [&case.bodies[a], &case.bodies[b]];
-    let both_rigid = first.rigid.is_some() && second.rigid.is_some();
-    if both_rigid || !flies_straight(case, a) || !flies_straight(case, b) {
+fn approach(case: &Case, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approach> {
+    let [first, second] = bodies.map(|body| &case.bodies[body]);
+    if first.rigid.is_some() && second.rigid.is_some() {
         return None;
     }
     let velocity = first.velocity - second.velocity;
     let spacing = 0.5 * (first.lattice.spacing + second.lattice.spacing);
     // Shapes reach a little beyond their particles.
-    let until = last_meeting([boxes[a]?, boxes[b]?], velocity, 4.0 * spacing);
+    let until = last_meeting(boxes, velocity, 4.0 * spacing);
+    if until < 0.0 {
+        return None;
+    }
     let mut approach = Approach {
-        bodies: [a, b],
+        bodies,
         gap: f64::INFINITY,
         speed: velocity.norm(),
         time: f64::INFINITY,
     };
-    if until >= 0.0 {
-        for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
-            let (gap, time) = towards(case, [body, target], velocity, until);
-            approach.gap = approach.gap.min(gap / spacing);
-            approach.time = approach.time.min(time);
-        }
+    for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
+        let (gap, time) = towards(case, [body, target], velocity, until);
+        approach.gap = approach.gap.min(gap / spacing);
+        approach.time = approach.time.min(time);
     }
     Some(approach)
 }

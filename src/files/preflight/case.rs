@@ -46,26 +46,30 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             .into_iter()
             .any(|body| body.velocity[plane.axis.index()] < 0.0)
     });
-    let moves = approaches.iter().any(|pair| pair.speed > 0.0);
+    // What deforms differs in velocity from another body if any two do.
+    let mut velocities = case.bodies.iter().map(|body| body.velocity);
+    let first = velocities.next();
+    let moves = velocities.any(|velocity| Some(velocity) != first)
+        && case.bodies.iter().any(|body| body.rigid.is_none());
     if driven || !straight || towards_mirror || !moves {
         return;
     }
     let first = approaches
         .iter()
         .min_by(|a, b| a.time.total_cmp(&b.time))
-        .filter(|pair| pair.time >= end);
-    if let Some(pair) = first {
+        .filter(|pair| pair.time.is_finite());
+    let Some(pair) = first else {
+        messages.push("nothing meets: no body flies towards another".to_owned());
+        return;
+    };
+    if pair.time >= end {
         let [a, b] = names(pair);
-        messages.push(if pair.time.is_finite() {
-            format!(
-                "nothing meets: `{a}` reaches `{b}`, {:.1} spacings away, at {}, after the end at {}",
-                pair.gap,
-                seconds(pair.time),
-                seconds(end)
-            )
-        } else {
-            "nothing meets: no body flies towards another".to_owned()
-        });
+        messages.push(format!(
+            "nothing meets: `{a}` reaches `{b}`, {:.1} spacings away, at {}, after the end at {}",
+            pair.gap,
+            seconds(pair.time),
+            seconds(end)
+        ));
     }
 }
 

@@ -54,7 +54,7 @@ impl Costs {
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of_case(case: &Case) -> Self {
-        let contact = ContactTable::new(case).is_active();
+        let contact = ContactTable::of_kinds(case).is_active();
         let options = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
         let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
         // Each rank reads all of a file.

@@ -1,6 +1,8 @@
 //! Checks that an impact is within the range of its materials' equations of state, and that they can fail
 //! where it would tear them.
 
+use std::collections::HashMap;
+
 use super::approach::Approach;
 use exact::hugoniot::{meeting, shock};
 use material::{Coupling, Eos, Material, Strength};
@@ -35,12 +37,13 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
     let mut braked = vec![false; case.materials.len()];
     let mut plugs = vec![false; case.materials.len()];
     let meetings = approaches.iter().filter(|pair| pair.time.is_finite());
+    let mut known = HashMap::new();
     for Shock {
         pair,
         closing,
         velocity,
         pressure,
-    } in meetings.flat_map(|pair| shocks(case, pair))
+    } in meetings.flat_map(|pair| shocks(case, pair, &mut known))
     {
         let [body, partner] = pair;
         let index = body.material;
@@ -102,27 +105,37 @@ struct Shock<'a> {
     pressure: f64,
 }
 
+/// Velocities (m/s) and pressures (Pa) behind shocks, by materials, whether the other body is rigid, and closing speed.
+type Known = HashMap<([usize; 2], bool, u64), [f64; 2]>;
+
 /// The shocks in those of two bodies that deform.
-fn shocks<'a>(case: &'a Case, approach: &Approach) -> impl Iterator<Item = Shock<'a>> {
+fn shocks<'a>(case: &'a Case, approach: &Approach, known: &mut Known) -> Vec<Shock<'a>> {
     let [a, b] = approach.bodies.map(|body| &case.bodies[body]);
     let closing = approach.speed;
     let deforming = [[a, b], [b, a]].into_iter();
     let deforming = deforming.filter(|[body, _]| body.rigid.is_none());
-    deforming.map(move |pair| {
-        let materials = pair.map(|body| &case.materials[body.material]);
-        let behind = if pair[1].rigid.is_some() {
-            shock(materials[0], closing)
-        } else {
-            let [behind, _] = meeting(materials, closing);
-            behind
+    let shock_in = |pair: [&'a Body; 2]| {
+        let (indices, rigid) = (pair.map(|body| body.material), pair[1].rigid.is_some());
+        let behind = || {
+            let materials = indices.map(|material| &case.materials[material]);
+            let behind = if rigid {
+                shock(materials[0], closing)
+            } else {
+                let [behind, _] = meeting(materials, closing);
+                behind
+            };
+            [behind.particle_velocity, behind.pressure]
         };
+        let key = (indices, rigid, closing.to_bits());
+        let [velocity, pressure] = *known.entry(key).or_insert_with(behind);
         Shock {
             pair,
             closing,
-            velocity: behind.particle_velocity,
-            pressure: behind.pressure,
+            velocity,
+            pressure,
         }
-    })
+    };
+    deforming.map(shock_in).collect()
 }
 
 /// Stress (Pa) of the linear viscosity in a body that flows over its thickness at a velocity (m/s), `½ α

@@ -17,8 +17,8 @@ pub use initial::beginning;
 pub use steps::{expected_step, expected_steps};
 pub use waves::{TIMES, Waiting, Waves, mean_work};
 
-use model::{Body, Case, ContactMode};
-use populate::{self, overlap};
+use model::{Body, Case};
+use populate::{self, close_pairs, overlap};
 
 /// Overlaps below this are within the rounding of curved faces to a lattice (spacings).
 const SHALLOW: f64 = 0.2;
@@ -30,17 +30,15 @@ const SHALLOW: f64 = 0.2;
 #[must_use]
 pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     let mut messages = Vec::new();
-    for (a, body) in case.bodies.iter().enumerate() {
-        for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
-            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
-                && (body.rigid.is_none() || other.rigid.is_none());
-            if let Some(overlap) = sees.then(|| overlap(case, a, b)).flatten()
-                && overlap.depth > SHALLOW
-            {
+    let mut close = close_pairs(case).into_iter().peekable();
+    for (index, body) in case.bodies.iter().enumerate() {
+        while let Some([a, b]) = close.next_if(|pair| pair[0] == index) {
+            let found = overlap(case, a, b).filter(|overlap| overlap.depth > SHALLOW);
+            if let Some(overlap) = found {
                 messages.push(format!(
                     "`{}` and `{}` begin {:.2} spacings within each other, which contact takes \
                      for their state of rest; `touch` would lay one against the other",
-                    body.name, other.name, overlap.depth
+                    body.name, case.bodies[b].name, overlap.depth
                 ));
             }
         }

@@ -1,6 +1,6 @@
 //! Values that are allowed but make no sense in a run.
 
-use super::approach::Approach;
+use super::approach::{Approach, flies_straight};
 use super::steps::expected_step;
 use material::AfterSpall;
 use model::readable::{short, shown};
@@ -109,25 +109,55 @@ fn weight_on_zones(case: &Case, messages: &mut Vec<String>) {
 
 /// Bodies in contact with very different spacings, and bodies that separate from touching ones.
 fn pairs(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
-    for (a, body) in case.bodies.iter().enumerate() {
-        for (b, other) in case.bodies.iter().enumerate().skip(a + 1) {
-            let rigid = body.rigid.is_some() && other.rigid.is_some();
-            // Bodies joined by the kernel are one continuum.
-            let mode = case.contact_between(a, b);
-            if rigid || mode.class().is_none() {
-                continue;
+    for pair in approaches.iter().filter(|pair| pushes(case, pair.bodies)) {
+        let [body, other] = pair.bodies.map(|body| &case.bodies[body]);
+        if pair.time < case.run.end_time {
+            messages.extend(ratio(body, other));
+        }
+        if pair.gap < TOUCH {
+            messages.extend(leaving(body, other, case.dimension));
+        }
+    }
+    let [body, other] = unforeseen(case).map(|body| &case.bodies[body]);
+    messages.extend(ratio(body, other));
+}
+
+/// True if two bodies have contact that is not of one continuum, as bodies joined by the kernel are.
+fn pushes(case: &Case, bodies: [usize; 2]) -> bool {
+    let rigid = bodies.iter().all(|&body| case.bodies[body].rigid.is_some());
+    let [a, b] = bodies;
+    !rigid && case.contact_between(a, b).class().is_some()
+}
+
+/// The pair of bodies with the most different spacings that may meet at a time that is not foreseen; the first body
+/// twice if there is none.
+fn unforeseen(case: &Case) -> [usize; 2] {
+    let bodies = 0..case.bodies.len();
+    let bends: Vec<bool> = bodies
+        .clone()
+        .map(|body| !flies_straight(case, body))
+        .collect();
+    let mut farthest = ([0; 2], MOST_RATIO);
+    let pairs = case.contacts.iter().map(|pair| &pair.mode);
+    let mut modes = pairs.chain([&case.default_contact]);
+    if !bends.contains(&true) || !modes.any(|mode| mode.class().is_some()) {
+        return farthest.0;
+    }
+    let spacing = |body: usize| case.bodies[body].lattice.spacing;
+    let mut order: Vec<usize> = bodies.collect();
+    order.sort_by(|&a, &b| spacing(a).total_cmp(&spacing(b)));
+    for &fine in &order {
+        for &wide in order.iter().rev() {
+            let ratio = spacing(wide) / spacing(fine);
+            if ratio <= farthest.1 {
+                break;
             }
-            let place = approaches.binary_search_by_key(&[a, b], |pair| pair.bodies);
-            let approach = place.ok().map(|place| &approaches[place]);
-            // Bodies without a known approach may meet.
-            if approach.is_none_or(|pair| pair.time < case.run.end_time) {
-                messages.extend(ratio(body, other));
-            }
-            if approach.is_some_and(|pair| pair.gap < TOUCH) {
-                messages.extend(leaving(body, other, case.dimension));
+            if (bends[fine] || bends[wide]) && pushes(case, [fine, wide]) {
+                farthest = ([fine, wide], ratio);
             }
         }
     }
+    farthest.0
 }
 
 fn ratio(body: &Body, other: &Body) -> Option<String> {

@@ -1,5 +1,7 @@
 //! Prediction of time steps.
 
+use std::collections::HashMap;
+
 use super::approach::Approach;
 use exact::hugoniot::{Medium, Shock, impact};
 use model::{Body, Case, Vec3};
@@ -56,16 +58,20 @@ pub fn expected_steps(case: &Case, approaches: &[Approach], from: f64) -> Option
 /// that meet. A shock and the release from the nearest free face cross the smaller body.
 fn shock(case: &Case, approaches: &[Approach]) -> Option<([f64; 2], f64)> {
     let mut strongest: Option<([f64; 2], f64)> = None;
+    // Signals grow with the speed of an impact.
+    let mut fastest: HashMap<[usize; 2], f64> = HashMap::new();
     for pair in approaches {
         let bodies = pair.bodies.map(|body| &case.bodies[body]);
         let of = |k: usize| Medium::of(&case.materials[bodies[k].material]);
         let deform = bodies.iter().all(|body| body.rigid.is_none());
-        let (Some(flyer), Some(target)) = (of(0), of(1)) else {
-            continue;
-        };
         if !deform || pair.speed == 0.0 || !pair.time.is_finite() {
             continue;
         }
+        let most = fastest.entry(bodies.map(|body| body.material)).or_default();
+        let (true, Some(flyer), Some(target)) = (pair.speed > *most, of(0), of(1)) else {
+            continue;
+        };
+        *most = pair.speed;
         let along = (bodies[0].velocity - bodies[1].velocity) / pair.speed;
         let way = bodies.map(|body| free_way(case, body, &along));
         let impact = impact(&flyer, &target, pair.speed);

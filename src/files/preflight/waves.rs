@@ -1,6 +1,8 @@
 //! Particles that waves have reached by a time. Particles at rest cost next to nothing, see the theory page "Smoothed
 //! particle hydrodynamics".
 
+use std::collections::BTreeMap;
+
 use super::approach::{Approach, Ends, flies_straight};
 use material::Rest;
 use model::{Body, Case, Heat, SphForm, Vec3};
@@ -21,8 +23,11 @@ const SLEEPING: f64 = 0.01;
 /// Times of a run at which its particles are examined.
 pub const TIMES: usize = 8;
 
-/// Positions examined in a body.
-const SAMPLES: u64 = 20_000;
+/// Positions examined in a body at most.
+const SAMPLES: usize = 20_000;
+
+/// Distances of positions from strikes at most that a share of the work is found from.
+const MOST_LOOKS: usize = 4_000_000;
 
 /// Prediction of the particles of a case that wait for a wave.
 #[derive(Debug, Clone)]
@@ -83,18 +88,24 @@ impl Waves {
         // Bodies that turn or follow a table meet others at an unknown time: at once is on the safe side.
         let unforeseen = (0..case.bodies.len())
             .filter(|&body| still[body].is_none() && !flies_straight(case, body));
-        let mut strikes: Vec<_> = unforeseen
-            .filter_map(|body| strike(case, body, 0.0))
-            .collect();
+        // Waves of the first strike of a body are ahead of those of the later ones.
+        let mut first: BTreeMap<usize, f64> = unforeseen.map(|body| (body, 0.0)).collect();
         for pair in approaches {
             let waits = pair.bodies.iter().any(|&body| still[body].is_some());
             if waits && pair.time.is_finite() {
                 let moves = |body: &usize| case.bodies[*body].velocity.norm() > 0.0;
-                let moving = pair.bodies.into_iter().filter(moves);
-                strikes.extend(moving.filter_map(|body| strike(case, body, pair.time)));
+                for body in pair.bodies.into_iter().filter(moves) {
+                    let time = first.entry(body).or_insert(f64::INFINITY);
+                    *time = time.min(pair.time);
+                }
             }
         }
-        Some(Self { still, strikes })
+        let strikes = first.into_iter();
+        let strikes = strikes.filter_map(|(body, time)| strike(case, body, time));
+        Some(Self {
+            still,
+            strikes: strikes.collect(),
+        })
     }
 
     /// Distance (m) of waves from a position (m) in a body at a time (s), negative where they have been. They go from any
@@ -134,10 +145,15 @@ impl Waves {
     pub fn share_of_work(&self, case: &Case, from: f64) -> f64 {
         let (mut work, mut all) = (0.0, 0.0);
         let times = Self::times(case, from);
-        for (b, body) in case.bodies.iter().enumerate() {
+        let bodies = case.bodies.len();
+        let looks = bodies * self.strikes.len().max(1);
+        // Of very many bodies some stand for all.
+        let stride = looks.div_ceil(MOST_LOOKS);
+        let samples = (MOST_LOOKS * stride / looks.max(1)).clamp(1, SAMPLES);
+        for (b, body) in case.bodies.iter().enumerate().step_by(stride.max(1)) {
             let (dimension, planes) = (case.dimension, &case.symmetry);
             let count = as_number(populate::count(body, dimension, planes, None));
-            let (sites, _) = populate::sample(body, dimension, planes, SAMPLES);
+            let (sites, _) = populate::sample(body, dimension, planes, samples as u64);
             let waiting: Vec<Waiting> = sites
                 .map(|site| self.waiting(b, &site.position, &times))
                 .collect();

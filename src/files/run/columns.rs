@@ -7,7 +7,7 @@ use engine::step::{LoadState, PairState, Passed, Removed, RunState};
 
 /// Columns with SI units, by length or area in a model of fewer dimensions. A name that ends with `*` is
 /// that of three columns.
-pub(super) fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
+pub(crate) fn columns(dimension: usize, list: &[(&str, &str)]) -> Vec<Column> {
     let mut all = Vec::new();
     for (name, unit) in list {
         let unit = unit_of_model(unit, dimension);
@@ -73,7 +73,7 @@ macro_rules! tables {
             $( $name:literal, $unit:literal, $value:expr; )+
         }
     )+) => { $(
-        pub(super) const $columns: &[(&str, &str)] = &[$( ($name, $unit) ),+];
+        pub(crate) const $columns: &[(&str, &str)] = &[$( ($name, $unit) ),+];
 
         $(#[$doc])+
         pub(super) fn $row<'a>($($given: $type),+) -> Vec<Value<'a>> {

@@ -3,7 +3,7 @@
 
 mod announce;
 mod census;
-mod columns;
+pub(crate) mod columns;
 mod departures;
 mod driver;
 pub mod exit;

@@ -53,9 +53,14 @@ impl Groups {
 fn join(case: &Case) -> Vec<usize> {
     let n = case.bodies.len();
     let mut leader: Vec<usize> = (0..n).collect();
+    let joins = |mode: &ContactMode| matches!(mode, ContactMode::Kernel);
+    let named = case.contacts.iter().map(|pair| &pair.mode);
+    if !named.chain([&case.default_contact]).any(joins) {
+        return leader;
+    }
     for a in 0..n {
         for b in a + 1..n {
-            if matches!(case.contact_between(a, b), ContactMode::Kernel) {
+            if joins(case.contact_between(a, b)) {
                 let (keep, drop) = (leader[a].min(leader[b]), leader[a].max(leader[b]));
                 for entry in &mut leader {
                     if *entry == drop {

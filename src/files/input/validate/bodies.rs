@@ -1,5 +1,6 @@
 //! Bodies: shapes in metres, lattices, velocities; then touch and whether there are particles.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use toml::Spanned;
@@ -77,10 +78,11 @@ impl Reader<'_> {
             let title = format!("more than {MOST_BODIES} bodies");
             return Err(Diagnostic::new(table.get_ref().name.span(), title));
         }
-        let mut bodies: Vec<Body> = Vec::new();
+        let mut bodies: Vec<Body> = Vec::with_capacity(params.len());
+        let mut taken = HashSet::new();
         for table in params {
             let body = self.body(table)?;
-            if bodies.iter().any(|other| other.name == body.name) {
+            if !taken.insert(table.get_ref().name.get_ref().as_str()) {
                 let title = format!("a second body is named `{}`", body.name);
                 return Err(Diagnostic::new(table.get_ref().name.span(), title));
             }

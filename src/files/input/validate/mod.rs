@@ -45,10 +45,10 @@ use super::source::Diagnostic;
 use material::Material;
 use model::readable::Readable;
 use model::{
-    Axis, Body, Case, ContactMode, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions,
-    RunControl, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
+    SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
 };
-use populate::overlap;
+use populate::{close_pairs, overlap};
 use region::KeepReader;
 use toml::Spanned;
 
@@ -160,25 +160,25 @@ fn check_moduli(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagn
 
 /// Bodies that begin within each other would fly apart at once.
 fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
-    for (b, table) in params.iter().enumerate() {
-        for a in 0..b {
-            let bodies = [a, b].map(|body| &case.bodies[body]);
-            let sees = !matches!(case.contact_between(a, b), ContactMode::None)
-                && bodies.iter().any(|body| body.rigid.is_none());
-            let found = sees.then(|| overlap(case, a, b)).flatten();
-            if let Some(found) = found.filter(|found| found.depth > MOST_OVERLAP) {
-                let title = format!(
-                    "`{}` begins {:.1} spacings within `{}`, near {}",
-                    bodies[1].name,
-                    found.depth,
-                    bodies[0].name,
-                    case.length_unit.vector(&found.at[..case.dimension])
-                );
-                return Err(Diagnostic::new(table.get_ref().form_span(), title).help(
+    let mut pairs = close_pairs(case);
+    // The first body that lies in one before it.
+    pairs.sort_by_key(|&[a, b]| [b, a]);
+    for [a, b] in pairs {
+        let found = overlap(case, a, b).filter(|found| found.depth > MOST_OVERLAP);
+        if let Some(found) = found {
+            let title = format!(
+                "`{}` begins {:.1} spacings within `{}`, near {}",
+                case.bodies[b].name,
+                found.depth,
+                case.bodies[a].name,
+                case.length_unit.vector(&found.at[..case.dimension])
+            );
+            return Err(
+                Diagnostic::new(params[b].get_ref().form_span(), title).help(
                     "move one of them, or let it `touch` the other; only bodies with contact of \
-                     mode \"none\" may overlap",
-                ));
-            }
+                 mode \"none\" may overlap",
+                ),
+            );
         }
     }
     Ok(())

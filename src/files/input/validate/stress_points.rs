@@ -48,7 +48,9 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Diagnostic> {
         return refuse(title, "take a box, a sphere or a cylinder along an axis");
     }
     let n = case.bodies.len();
-    let mut modes = (0..n).flat_map(|a| (a + 1..n).map(move |b| case.contact_between(a, b)));
+    let named = case.contacts.iter().map(|pair| &pair.mode);
+    let others = (case.contacts.len() < n * (n - 1) / 2).then_some(&case.default_contact);
+    let mut modes = named.chain(others);
     if let Some(mode) = modes.find(|mode| mode.needs_sums()) {
         let mode = mode.name();
         let title = format!(

@@ -4,10 +4,11 @@ use toml::Spanned;
 
 use crate::input::schema::BodyParams;
 use crate::input::source::Diagnostic;
-use model::{BodyForm, Case};
+use model::{BodyForm, Case, ClosingSpeeds};
 
 /// Chooses the form of each body.
 pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
+    let speeds = ClosingSpeeds::new(case);
     for (body, table) in params.iter().enumerate() {
         let table = table.get_ref();
         let obstacle = case.total_obstacle(body);
@@ -20,7 +21,7 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
             }
             (BodyForm::Total, None) => true,
             (BodyForm::Updated, _) => false,
-            (BodyForm::Auto, obstacle) => obstacle.is_none() && case.flows_slowly(body),
+            (BodyForm::Auto, obstacle) => obstacle.is_none() && case.flows_slowly(body, &speeds),
         };
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! `touch`: bodies moved until their outermost layers are one mean spacing apart, and bodies laid
 //! on rigid planes, half a spacing from them.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -23,32 +24,21 @@ pub fn resolve(
     bodies: &mut [Body],
     dimension: usize,
 ) -> Result<(), Diagnostic> {
-    let mut waiting: Vec<(usize, usize, &TouchParams)> = Vec::new();
-    for (index, table) in params.iter().enumerate() {
-        if let Some(touch) = &table.get_ref().touch {
-            let name = touch.body.get_ref();
-            let others = bodies
-                .iter()
-                .enumerate()
-                .filter(|(other, _)| *other != index);
-            let names = others.map(|(_, body)| body.name.as_str());
-            let target = bodies.iter().position(|b| b.name == *name);
-            match target.filter(|target| *target != index) {
-                Some(target) => waiting.push((index, target, touch)),
-                None => return Err(Diagnostic::unknown(touch.body.span(), "body", name, names)),
-            }
+    let touches = targets(params, bodies)?;
+    let mut state = vec![State::Waiting; bodies.len()];
+    for start in 0..bodies.len() {
+        // Along the chain of what is touched, then back from its end.
+        let (mut chain, mut at) = (Vec::new(), start);
+        while let (State::Waiting, Some((target, touch))) = (state[at], touches[at]) {
+            state[at] = State::Moving;
+            chain.push((at, target, touch));
+            at = target;
         }
-    }
-    while !waiting.is_empty() {
-        let moving: Vec<usize> = waiting.iter().map(|(index, ..)| *index).collect();
-        let (ready, later): (Vec<_>, Vec<_>) = waiting
-            .into_iter()
-            .partition(|(_, target, _)| !moving.contains(target));
-        if let ([], Some((_, _, touch))) = (ready.as_slice(), later.first()) {
+        if let (State::Moving, Some((_, touch))) = (state[at], touches[start]) {
             let title = "bodies touch each other in a circle: one of them must stand still";
             return Err(Diagnostic::new(touch.body.span(), title));
         }
-        for (index, target, touch) in ready {
+        for (index, target, touch) in chain.into_iter().rev() {
             let (axis, forward) = direction(
                 *touch.direction.get_ref(),
                 touch.direction.span(),
@@ -58,10 +48,41 @@ pub fn resolve(
             // A body without particles is refused later on.
             let distance = populate::touching_distance(body, other, dimension, axis, forward);
             translate(&mut bodies[index], axis, distance.unwrap_or(0.0));
+            state[index] = State::Still;
         }
-        waiting = later;
     }
     Ok(())
+}
+
+/// What a body that touches another does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Waiting,
+    /// As soon as the one that it touches stands.
+    Moving,
+    Still,
+}
+
+/// By body, the one that it touches.
+fn targets<'a>(
+    params: &'a [Spanned<BodyParams>],
+    bodies: &[Body],
+) -> Result<Vec<Option<(usize, &'a TouchParams)>>, Diagnostic> {
+    let names = || bodies.iter().map(|body| body.name.as_str()).enumerate();
+    let places: HashMap<&str, usize> = names().map(|(index, name)| (name, index)).collect();
+    let target = |(index, table): (usize, &'a Spanned<BodyParams>)| {
+        let Some(touch) = &table.get_ref().touch else {
+            return Ok(None);
+        };
+        let name = touch.body.get_ref();
+        let found = places.get(name.as_str()).filter(|found| **found != index);
+        found.map(|found| Some((*found, touch))).ok_or_else(|| {
+            let others = names().filter(|(other, _)| *other != index);
+            let others = others.map(|(_, name)| name);
+            Diagnostic::unknown(touch.body.span(), "body", name, others)
+        })
+    };
+    params.iter().enumerate().map(target).collect()
 }
 
 /// Moves bodies whose shapes rest on rigid planes until their outermost particles are where the

@@ -1,0 +1,79 @@
+//! Sizes of a run's tables.
+
+use crate::output::{RowSchedule, Schedule, gauge_records};
+use crate::run::columns::{BODIES, CONTACTS, GAUGES, HISTORY, LOADS, WITNESS, columns};
+use engine::measure::Gauges;
+use model::{Cadence, Case};
+use populate::close_pairs;
+
+/// Bytes of a number in a table with its comma: one with all its digits, and one that is zero or a small count.
+const NUMBER: f64 = 19.5;
+const NOUGHT: f64 = 4.0;
+
+/// Bytes of a number in records of many gauges.
+const RECORDED: f64 = 8.0;
+
+/// Bytes of the tables of a case of so many steps. Of measures, fragments and crossings, which nobody knows before, there is
+/// nothing.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+pub(super) fn bytes(case: &Case, steps: f64) -> f64 {
+    let [rows, of_bodies] = RowSchedule::of(case).counts(steps, case.run.end_time);
+    let width = |list| columns(case.dimension, list).len() as f64;
+    let bodies = case.bodies.len() as f64;
+    let [touching, apart] = pairs(case);
+    let mut each_row = NUMBER * width(HISTORY);
+    each_row += width(CONTACTS) * (NUMBER * touching + NOUGHT * apart);
+    each_row += NUMBER * width(LOADS) * case.load_names().count() as f64;
+    let sides = 2.0 * case.measure.witnesses.len() as f64 * bodies;
+    each_row += NOUGHT * width(WITNESS) * sides;
+    let figures = if case.measure.bodies {
+        NUMBER * width(BODIES) * bodies
+    } else {
+        0.0
+    };
+    rows * each_row + of_bodies * figures + gauges(case, steps)
+}
+
+/// Pairs of bodies with rows of contacts that begin near each other, and those that do not.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn pairs(case: &Case) -> [f64; 2] {
+    let named = case.contacts.iter();
+    let named = named.filter(|pair| pair.mode.class().is_some()).count() as f64;
+    let all = case.bodies.len() as f64;
+    let rigid = case.bodies.iter().filter(|body| body.rigid.is_some());
+    let rigid = rigid.count() as f64;
+    let pairs = if case.default_contact.class().is_some() {
+        0.5 * (all * (all - 1.0) - rigid * (rigid - 1.0))
+    } else {
+        named
+    };
+    let pushes = |&[a, b]: &[usize; 2]| case.contact_between(a, b).class().is_some();
+    let near = close_pairs(case).iter().filter(|pair| pushes(pair)).count() as f64;
+    let own = if case.self_contact.is_some() {
+        all - rigid
+    } else {
+        0.0
+    };
+    [near, pairs - near + own]
+}
+
+/// Bytes of the readings of gauges.
+#[allow(clippy::cast_precision_loss, reason = "an estimate")]
+fn gauges(case: &Case, steps: f64) -> f64 {
+    let all = &case.measure.gauges;
+    let width = columns(case.dimension, GAUGES).len() + Gauges::new(case).columns().count();
+    let each = if all.len() < gauge_records::MANY {
+        NUMBER
+    } else {
+        RECORDED
+    };
+    let readings = all.iter().map(|gauge| match gauge.every {
+        Cadence::Steps(every) => 1.0 + (steps / every.max(1) as f64).floor(),
+        Cadence::Time(every) => {
+            1.0 + Schedule::new(Some(every))
+                .count(case.run.end_time)
+                .min(steps)
+        }
+    });
+    each * width as f64 * readings.sum::<f64>()
+}
