@@ -7,9 +7,10 @@ use serde_json::json;
 use super::load::load;
 use super::output_time::Seconds;
 use crate::output::{VERSION, commit, h5};
+use crate::preflight::{Across, across, approaches};
 use comm::{self, Comm};
 use engine::step::{Removed, Simulation, failed_mass};
-use model::SphForm;
+use model::{Case, SphForm};
 
 /// Times of a run.
 #[derive(Debug, Clone, Copy)]
@@ -52,6 +53,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "threads": threads,
         "instructions": numerics::dispatch::instructions().name(),
         "particles": load.particles[0],
+        "particles_across": particles_across(comm, &simulation.case),
         "removed_particles": taken_out(&state.removed) - frozen,
         "frozen_particles": frozen,
         "removed_energy": state.removed_energy(),
@@ -86,6 +88,21 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
     });
     summary["left_total_form"] = json!(left_total_form(simulation));
     summary
+}
+
+/// Particles across each body that deforms, at the start, and the least that its figures need; on rank 0.
+fn particles_across<'a>(
+    comm: &Comm,
+    case: &'a Case,
+) -> Option<BTreeMap<&'a str, serde_json::Value>> {
+    comm.is_root().then(|| {
+        let bodies = across(case, &approaches(case)).into_iter();
+        let row = |across: Across| {
+            let figures = json!({ "particles": across.particles, "least": across.least });
+            (case.bodies[across.body].name.as_str(), figures)
+        };
+        bodies.map(row).collect()
+    })
 }
 
 /// Bodies that have left the total form, with the time (s) and the reason, if any had it.

@@ -31,6 +31,10 @@ use results::Opener;
 /// Unit of the drawn quantity.
 const UNIT: &str = "kg/m^2";
 
+/// The darkest colour is for this many times what a quarter of the pixels with matter fall short of: edges of plates
+/// are black, as in a flash X-ray, and debris is seen.
+const DARKEST: f64 = 8.0;
+
 /// The message for a flat model.
 const FLAT: &str = "a radiograph needs a model of three dimensions: this one has no depth";
 
@@ -41,7 +45,7 @@ pub struct RadiographRequest {
     pub along: String,
     /// `LEFT:RIGHT,BOTTOM:TOP`; everything if absent.
     pub part: Option<String>,
-    /// `LOW:HIGH` of the colours; from zero to the largest but a few if absent.
+    /// `LOW:HIGH` of the colours; if absent from zero to the largest, or to less where most of the matter is thin.
     pub range: Option<String>,
     /// `true` to reflect at planes of symmetry.
     pub mirror: bool,
@@ -195,8 +199,11 @@ impl Radiographs {
             }
         }
         let all = sampled.scale(self.range);
-        let low = self.range.map_or(0.0, |[low, _]| low);
-        let scale = Scale::grey([low, all.high], all.above);
+        let [low, high] = self.range.unwrap_or_else(|| {
+            let thin = sampled.quantile(0.25);
+            [0.0, all.high.min(DARKEST * thin)]
+        });
+        let scale = Scale::grey([low, high], all.above || high < all.high);
         let bar = ColourBar::new(scale, "mass per area", UNIT, false);
         Ok(self.colours.get_or_init(|| Colours::Bar(bar)))
     }
