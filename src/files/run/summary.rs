@@ -53,7 +53,6 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "threads": threads,
         "instructions": numerics::dispatch::instructions().name(),
         "particles": load.particles[0],
-        "particles_across": particles_across(comm, &simulation.case),
         "removed_particles": taken_out(&state.removed) - frozen,
         "frozen_particles": frozen,
         "removed_energy": state.removed_energy(),
@@ -86,6 +85,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     });
+    summary["particles_across"] = json!(particles_across(comm, &simulation.case));
     summary["left_total_form"] = json!(left_total_form(simulation));
     summary
 }

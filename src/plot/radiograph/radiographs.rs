@@ -199,14 +199,18 @@ impl Radiographs {
             }
         }
         let all = sampled.scale(self.range);
-        let [low, high] = self.range.unwrap_or_else(|| {
-            let thin = sampled.quantile(0.25);
-            [0.0, all.high.min(DARKEST * thin)]
-        });
+        let [low, high] = self
+            .range
+            .unwrap_or_else(|| [0.0, darkest(&sampled, all.high)]);
         let scale = Scale::grey([low, high], all.above || high < all.high);
         let bar = ColourBar::new(scale, "mass per area", UNIT, false);
         Ok(self.colours.get_or_init(|| Colours::Bar(bar)))
     }
+}
+
+/// The value of black for masses per area of which all but a few are at most `high`.
+fn darkest(covered: &Sampled, high: f64) -> f64 {
+    high.min(DARKEST * covered.quantile(0.25))
 }
 
 impl Sequence for Radiographs {
@@ -250,5 +254,24 @@ impl Sequence for Radiographs {
             }
             draw_axes(canvas, layout, k, self.axes);
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "products of small numbers are exact")]
+    fn debris_is_seen_beside_plates_and_a_lone_body_keeps_its_range() {
+        let of = |values: &[f64]| {
+            let mut covered = Sampled::default();
+            covered.extend(values.iter().copied(), values.len());
+            darkest(&covered, 256.0)
+        };
+        let debris = [vec![256.0; 60], vec![1.0; 40]].concat();
+        assert_eq!(of(&debris), 8.0);
+        let plate = [vec![256.0; 90], vec![1.0; 10]].concat();
+        assert_eq!(of(&plate), 256.0);
     }
 }

@@ -77,16 +77,8 @@ impl Body {
         let ends = self.ends[axis];
         self.places.sort_by(|a, b| a.0[axis].total_cmp(&b.0[axis]));
         let whole: f64 = self.places.iter().map(|(_, matter)| matter).sum();
-        let end = |places: &mut dyn Iterator<Item = &([f64; 2], f64)>| {
-            let mut beyond = 0.0;
-            let inner = places.find(|(_, matter)| {
-                beyond += matter;
-                beyond > SPECKS * whole
-            });
-            inner.map(|(at, _)| at[axis])
-        };
-        let low = end(&mut self.places.iter());
-        let high = end(&mut self.places.iter().rev());
+        let low = inner(self.places.iter(), axis, SPECKS * whole);
+        let high = inner(self.places.iter().rev(), axis, SPECKS * whole);
         let (Some(low), Some(high)) = (low, high) else {
             return ends;
         };
@@ -107,6 +99,20 @@ impl Body {
             },
         ]
     }
+}
+
+/// The first place along an axis (m) beyond which there is more than so much matter.
+fn inner<'a>(
+    mut places: impl Iterator<Item = &'a ([f64; 2], f64)>,
+    axis: usize,
+    specks: f64,
+) -> Option<f64> {
+    let mut beyond = 0.0;
+    let found = places.find(|(_, matter)| {
+        beyond += matter;
+        beyond > specks
+    });
+    found.map(|(at, _)| at[axis])
 }
 
 /// The span of two.
