@@ -86,7 +86,7 @@ pub fn run(args: &CheckArgs) -> u8 {
     }
     let approaches = preflight::approaches(&case);
     let mut warnings = preflight::warnings(&case, &approaches);
-    warnings.extend(preflight::advice(&case));
+    warnings.extend(preflight::advice(&case, &approaches));
     for warning in &warnings {
         warn(&format!("warning: {warning}"));
     }

@@ -6,7 +6,9 @@ mod movie;
 pub(super) mod out;
 mod scene;
 
-use std::path::{Path, PathBuf};
+use std::collections::BTreeSet;
+use std::ffi::{OsStr, OsString};
+use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde_json::json;
@@ -335,26 +337,49 @@ fn sources_of(args: &PlotArgs) -> impl Iterator<Item = &PathBuf> {
 
 /// The chosen snapshots of each place.
 fn sources(args: &PlotArgs) -> Result<Vec<Source>, PlotError> {
-    let source = |path: &PathBuf| {
+    let source = |(name, path): (String, &PathBuf)| {
         Ok(Source {
-            name: name(path),
+            name,
             snapshots: args.which.at(path, default_choice(args))?,
         })
     };
-    sources_of(args).map(source).collect()
+    named_sources(args).into_iter().map(source).collect()
 }
 
-/// The name of a run or file in a legend.
-fn name(path: &Path) -> String {
-    let name = if path.is_dir() {
-        path.file_name()
-    } else {
-        path.file_stem()
+/// Each source with its name in a legend.
+fn named_sources(args: &PlotArgs) -> Vec<(String, &PathBuf)> {
+    let sources: Vec<&PathBuf> = sources_of(args).collect();
+    names(&sources).into_iter().zip(sources).collect()
+}
+
+/// The names of runs or files in a legend: of those called alike those of their folders, as of `history.csv` of two
+/// runs, else the paths as they were typed.
+fn names(paths: &[&PathBuf]) -> Vec<String> {
+    let own = |path: &&PathBuf| {
+        let name = if path.is_dir() {
+            path.file_name()
+        } else {
+            path.file_stem()
+        };
+        name.map(OsStr::to_owned)
     };
-    name.map_or_else(
-        || path.display().to_string(),
-        |name| name.to_string_lossy().into_owned(),
-    )
+    let of_folder = |path: &&PathBuf| Some(path.parent()?.file_name()?.to_owned());
+    let owns: Option<Vec<OsString>> = paths.iter().map(own).collect();
+    let folders: Option<Vec<OsString>> = paths.iter().map(of_folder).collect();
+    let different =
+        |names: &Vec<OsString>| names.iter().collect::<BTreeSet<_>>().len() == names.len();
+    let typed = || {
+        paths
+            .iter()
+            .map(|path| path.as_os_str().to_owned())
+            .collect()
+    };
+    let names = [owns, folders].into_iter().flatten().find(different);
+    let names = names.unwrap_or_else(typed);
+    names
+        .iter()
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect()
 }
 
 fn default_choice(args: &PlotArgs) -> Wanted {
@@ -369,4 +394,18 @@ fn default_choice(args: &PlotArgs) -> Wanted {
 
 pub(super) fn wanted(args: &PlotArgs) -> Result<Wanted, PlotError> {
     args.which.wanted(default_choice(args))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_called_alike_are_told_apart() {
+        let of = |paths: [&str; 2]| names(&[&PathBuf::from(paths[0]), &PathBuf::from(paths[1])]);
+        assert_eq!(of(["a/b.csv", "c.csv"]), ["b", "c"]);
+        assert_eq!(of(["runs/a/history.csv", "runs/b/history.csv"]), ["a", "b"]);
+        let snapshots = ["a/snapshots/x.vtkhdf", "b/snapshots/x.vtkhdf"];
+        assert_eq!(of(snapshots), snapshots);
+    }
 }

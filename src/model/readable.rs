@@ -41,6 +41,13 @@ impl Readable {
         if takes_prefix(&unit) {
             return Self::prefixed(&unit, largest);
         }
+        if unit == "kg" && largest > 0.0 && largest < 1.0 {
+            let gram = Self::prefixed("g", 1e3 * largest);
+            return Self {
+                size: 1e-3 * gram.size,
+                ..gram
+            };
+        }
         let power = power_of_thousand(largest);
         let factor = match power {
             0 => String::new(),
@@ -73,6 +80,12 @@ impl Readable {
             size,
             name: format!("{prefix}{unit}"),
         }
+    }
+
+    /// The unit of the axes of a picture that reaches so far (m): millimetres up to half a metre.
+    #[must_use]
+    pub fn axes(reach: f64) -> Self {
+        Self::new("m", if reach < 0.5 { reach.min(0.05) } else { reach })
     }
 
     /// The unit of length of this size (m), if it has a name; else one that fits.
@@ -117,6 +130,16 @@ impl Readable {
         format!("[{}]{}", numbers.join(", "), self.suffix())
     }
 
+    /// The unit behind its number: a power of ten multiplies it.
+    #[must_use]
+    pub fn behind(&self) -> String {
+        match self.name.as_str() {
+            "" => String::new(),
+            name if name.starts_with("10") => format!(" · {name}"),
+            name => format!(" {name}"),
+        }
+    }
+
     fn suffix(&self) -> String {
         if self.name.is_empty() {
             return String::new();
@@ -150,6 +173,16 @@ pub fn shown(value: f64, unit: &str) -> String {
 pub fn shown_vector(components: &[f64], unit: &str) -> String {
     let largest = components.iter().fold(0.0, |most, x| x.abs().max(most));
     plain(unit, largest).vector(components)
+}
+
+/// A value in SI with a unit that fits it, as people read it: `"2.5 µs"`, `"3 · 10⁶ 1/s"`; `–` if it is no number.
+#[must_use]
+pub fn with_unit(value: f64, unit: &str) -> String {
+    if !value.is_finite() {
+        return "–".to_owned();
+    }
+    let unit = Readable::new(unit, value.abs());
+    format!("{}{}", short(value / unit.size), unit.behind())
 }
 
 /// A number to five digits, with an exponent where it would be long.
@@ -277,6 +310,15 @@ mod tests {
         assert_eq!(name("m", 0.584), "m");
         assert_eq!(name("J/kg", 2.4e7), "MJ/kg");
         assert_eq!(name("kg/m^3", 2785.0), "kg/m³");
+        assert_eq!(name("kg", 8e-8), "µg");
+        assert_eq!(name("kg", 0.3), "g");
+        assert_eq!(name("kg", 3.0), "kg");
+        assert_eq!(name("kg m/s", 3e-9), "10⁻⁹ kg m/s");
+        assert_eq!(Readable::axes(0.3).name, "mm");
+        assert_eq!(Readable::axes(0.584).name, "m");
+        assert_eq!(Readable::axes(2e-5).name, "µm");
+        assert_eq!(with_unit(1e-5, "s"), "10 µs");
+        assert_eq!(with_unit(3e7, "1/s"), "30 · 10⁶ 1/s");
         assert_eq!(name("1", 0.3), "");
         assert_eq!(name("1", 0.0), "");
         assert_eq!(name("1/s", 3e7), "10⁶ 1/s");

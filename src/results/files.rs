@@ -28,10 +28,15 @@ pub fn partial(path: &Path) -> PathBuf {
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), OutputError> {
     let temporary = partial(path);
     let mut file = File::create(&temporary).map_err(OutputError::io("create", &temporary))?;
-    file.write_all(content)
-        .and_then(|()| file.sync_all())
-        .map_err(OutputError::io("write", &temporary))?;
-    publish(&temporary, path)
+    let written = file.write_all(content).and_then(|()| file.sync_all());
+    let published = written
+        .map_err(OutputError::io("write", &temporary))
+        .and_then(|()| publish(&temporary, path));
+    if published.is_err() {
+        // What has not become the file is of no use, and on a full disk in the way.
+        let _ = fs::remove_file(&temporary);
+    }
+    published
 }
 
 /// [`write_atomically`] of a value as indented JSON.
@@ -176,6 +181,16 @@ mod tests {
         let text = fs::read_to_string(&path).unwrap();
         assert_eq!(text, "[\n  0.1,\n  1e-30\n]\n");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_cannot_be_published_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("report.html");
+        fs::create_dir(&path).unwrap();
+        assert!(write_atomically(&path, b"page").is_err());
+        let left = fs::read_dir(folder.path()).unwrap();
+        assert_eq!(left.count(), 1, "the folder alone");
     }
 
     #[test]

@@ -10,11 +10,17 @@ const UNITS: &str = "# units:";
 const COMMENT: u8 = b'#';
 
 /// Values as one line with its end; those with commas, quotes or line ends are quoted.
+///
+/// # Panics
+/// If there is no memory left.
 pub fn line<T: AsRef<[u8]>>(values: impl IntoIterator<Item = T>) -> Vec<u8> {
     lines([values])
 }
 
 /// Records as lines.
+///
+/// # Panics
+/// If there is no memory left.
 pub fn lines<T: AsRef<[u8]>>(
     records: impl IntoIterator<Item = impl IntoIterator<Item = T>>,
 ) -> Vec<u8> {
@@ -39,6 +45,7 @@ pub fn units_line<T: AsRef<[u8]>>(units: impl IntoIterator<Item = T>) -> Vec<u8>
 }
 
 /// Reads records that all have as many values as the header.
+#[must_use]
 pub fn rows(content: &[u8]) -> Reader<&[u8]> {
     ReaderBuilder::new()
         .has_headers(false)

@@ -75,8 +75,8 @@ mod tests {
 
     /// Means about the middle and about a corner of a lattice of 7³.
     fn means(value: impl Fn([f64; 3]) -> f64) -> [[f64; 2]; 2] {
-        let place = |n: usize| [n % 7, n / 7 % 7, n / 49].map(|k| k as f64 - 3.0);
-        let record = |n: usize| MotionRecord {
+        let place = |n: u32| [n % 7, n / 7 % 7, n / 49].map(|k| f64::from(k) - 3.0);
+        let record = |n: u32| MotionRecord {
             position: place(n),
             velocity: [0.0; 3],
             volume: 1.0,

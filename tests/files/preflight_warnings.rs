@@ -132,7 +132,10 @@ fn a_small_overlap_is_told_in_spacings() {
 
 #[test]
 fn thin_bodies_are_told() {
-    let thin = |set: &[String]| advice(&parse("bar", BAR, set).unwrap());
+    let thin = |set: &[String]| {
+        let case = parse("bar", BAR, set).unwrap();
+        advice(&case, &approaches(&case))
+    };
     assert!(thin(&[]).is_empty());
     let set = ["body.plate.shape.box.lower=[\"-2 mm\", \"0.5 mm\"]".to_owned()];
     assert_eq!(thin(&set).len(), 1);
@@ -145,6 +148,30 @@ fn thin_bodies_are_told() {
     let mirror = "symmetry=[{ axis = \"y\" }]";
     assert!(thin(&[a, b, mirror].map(str::to_owned)).is_empty());
     assert_eq!(thin(&[a, b].map(str::to_owned)).len(), 1);
+}
+
+/// 8 particles across do for a body at rest and in the plane, not for what strikes in three dimensions.
+#[test]
+fn coarse_projectiles_are_told() {
+    let sphere = "body.bar.shape={ sphere = { centre = [0, \"3 mm\"], radius = \"0.4 mm\" } }";
+    let thin = |set: &[&str]| {
+        let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let case = parse("bar", BAR, &set).unwrap();
+        advice(&case, &approaches(&case))
+    };
+    assert!(thin(&[sphere]).is_empty(), "{:?}", thin(&[sphere]));
+    let solid = [
+        "dimension=3",
+        "body.bar.shape={ sphere = { centre = [0, \"3 mm\", 0], radius = \"0.4 mm\" } }",
+        "body.plate.shape={ box = { lower = [\"-2 mm\", 0, \"-2 mm\"], upper = [\"3 mm\", \"0.8 mm\", \"2 mm\"] } }",
+        "body.bar.velocity=[0, \"-1 km/s\", 0]",
+    ];
+    let told = thin(&solid);
+    assert_eq!(told.len(), 1, "{told:?}");
+    let said = "`bar` has 8.0 particles across its thinnest part; fewer than 10 of what strikes give rough figures";
+    assert!(told[0].starts_with(said), "{told:?}");
+    let away = [&solid[..3], &["body.bar.velocity=[0, \"1 km/s\", 0]"]].concat();
+    assert!(thin(&away).is_empty());
 }
 
 #[test]

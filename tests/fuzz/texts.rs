@@ -129,13 +129,10 @@ fn attempt(text: &str, overrides: &[String]) -> String {
     if case.bodies.iter().map(count).sum::<u64>() > MOST_PARTICLES {
         return "sound and large".to_owned();
     }
-    let mut said = warnings(&case, &approaches(&case));
-    said.extend(advice(&case));
-    said.extend(
-        approaches(&case)
-            .iter()
-            .map(|pair| format!("gap {}", pair.gap)),
-    );
+    let pairs = approaches(&case);
+    let mut said = warnings(&case, &pairs);
+    said.extend(advice(&case, &pairs));
+    said.extend(pairs.iter().map(|pair| format!("gap {}", pair.gap)));
     said.extend(case.bodies.iter().filter_map(|body| {
         let begins = beginning(&case, body)?;
         begins.contains("NaN").then_some(begins)

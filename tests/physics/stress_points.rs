@@ -4,9 +4,9 @@
 use crate::physics_support::bars::{axial_stress, interface_force};
 use crate::physics_support::{inline, median, ready, run_to, run_with, start};
 use crate::shocks::impact;
-use particles::connected::components;
 use engine::step::Simulation;
 use exact::finite_strain::Medium;
+use particles::connected::components;
 
 /// What carries stress: stress points, or all particles.
 fn carriers(s: &Simulation) -> Vec<usize> {

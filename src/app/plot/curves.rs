@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use files::output::RunFolder;
-use files::run::say::seconds;
+use model::readable::with_unit;
 use plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
     front, parse_pair, snapshots, tables_of_run, title, widest,
 };
 
 use super::out::{named, save_text, target, write_chart};
-use super::{PlotArgs, name, sources_of, wanted};
+use super::{PlotArgs, named_sources, wanted};
 use files::FileOpener;
 
 /// `true` if columns of a table are drawn.
@@ -76,8 +76,25 @@ const DISTRIBUTIONS: &str = "distributions.csv";
 /// The table of a run that its energies are in.
 const HISTORY: &str = "history.csv";
 
+/// The tables of a run in which columns are looked for, in this order.
+const TABLES: [&str; 11] = [
+    HISTORY,
+    "bodies.csv",
+    CONTACTS,
+    "measures.csv",
+    GAUGES,
+    "witness.csv",
+    "fragments.csv",
+    "loads.csv",
+    "performance.csv",
+    "removed.csv",
+    "departed.csv",
+];
+
 pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> {
-    let tables = sources_of(args).map(|source| (name(source), table(source, history.table())));
+    let tables = named_sources(args)
+        .into_iter()
+        .map(|(name, source)| (name, table(source, history.table())));
     let tables: Vec<_> = tables.collect();
     let chart = history.chart(&tables, &title_of(&args.source))?;
     let stem = match history {
@@ -90,20 +107,20 @@ pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> 
 /// Draws the fragments of each run by mass and by size.
 pub fn draw_fragments(args: &PlotArgs) -> Result<(), PlotError> {
     let mut tables = Vec::new();
-    for source in sources_of(args) {
+    for (name, source) in named_sources(args) {
         if !source.is_dir() {
-            tables.push((name(source), source.clone()));
+            tables.push((name, source.clone()));
             continue;
         }
         let folder = RunFolder::at(source);
         let all = tables_of_run(&folder.fragments(), |step| folder.fragment_table(step))?;
         for path in choose(&all, &wanted(args)?)? {
             let time = all.iter().find(|(_, other)| *other == path);
-            let time = time.map_or(String::new(), |(time, _)| seconds(*time));
+            let time = time.map_or(String::new(), |(time, _)| with_unit(*time, "s"));
             let label = if args.with.is_empty() {
                 time
             } else {
-                format!("{}, {time}", name(source))
+                format!("{name}, {time}")
             };
             tables.push((label, path));
         }
@@ -123,9 +140,13 @@ pub fn is_distributions(args: &PlotArgs) -> bool {
 
 /// Draws each distribution of the runs.
 pub fn draw_distributions(args: &PlotArgs) -> Result<(), PlotError> {
-    let tables = sources_of(args).map(|source| (name(source), table(source, DISTRIBUTIONS)));
+    let tables = named_sources(args)
+        .into_iter()
+        .map(|(name, source)| (name, table(source, DISTRIBUTIONS)));
     let tables: Vec<_> = tables.collect();
-    let charts = distributions(&tables, &wanted(args)?, &title_of(&args.source), seconds)?;
+    let charts = distributions(&tables, &wanted(args)?, &title_of(&args.source), |time| {
+        with_unit(time, "s")
+    })?;
     for (distribution, chart) in charts {
         let stem = distribution.replace('_', "-");
         write_chart(&chart, args.width, &beside(args, &stem, &stem))?;
@@ -150,7 +171,7 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
     let direction = Direction::parse(&args.along)?;
     let stem = format!("front-{body}-{}", direction.name().replace('_', "-"));
     let mut tables = Vec::new();
-    for source in sources_of(args) {
+    for (name, source) in named_sources(args) {
         let snapshots_of: Vec<_> = snapshots(&FileOpener, source)?
             .into_iter()
             .map(|snapshots_of| snapshots_of.1)
@@ -158,7 +179,7 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
         let path = source.join(format!("pictures/{stem}.csv"));
         let text = front(&FileOpener, &snapshots_of, body, direction)?;
         save_text(&path, text.as_bytes())?;
-        tables.push((name(source), path));
+        tables.push((name, path));
     }
     let mut chart = tables_of(
         args,
@@ -182,23 +203,31 @@ pub fn draw_front(args: &PlotArgs, body: &str) -> Result<(), PlotError> {
 }
 
 pub fn draw_tables(args: &PlotArgs, columns: &str) -> Result<(), PlotError> {
-    let tables = sources_of(args).map(|source| {
+    let typed = columns;
+    let columns = Columns::parse(typed)?;
+    let tables = named_sources(args).into_iter().map(|(name, source)| {
         let of_run = match (&args.pair, &args.gauges[..]) {
             (Some(_), _) => CONTACTS,
-            (None, []) => HISTORY,
+            (None, []) => table_with(source, &columns),
             _ if source.join(GAUGE_RECORDS).is_dir() => GAUGE_RECORDS,
             _ => GAUGES,
         };
-        (name(source), table(source, of_run))
+        (name, table(source, of_run))
     });
-    let mut picture = format!("xy-{}", columns.replace([':', ','], "-"));
+    let mut picture = format!("xy-{}", typed.replace([':', ','], "-"));
     if let Some(pair) = &args.pair {
         picture = format!("{picture}-{}", pair.replace(',', "-"));
     } else if !args.gauges.is_empty() {
         picture = format!("gauges-{picture}");
     }
-    let chart = tables_of(args, tables.collect(), Columns::parse(columns)?)?;
+    let chart = tables_of(args, tables.collect(), columns)?;
     draw(args, &chart, &picture)
+}
+
+/// The table of a run that has some columns: its history, else the first by name that has them all.
+fn table_with(run: &Path, columns: &Columns) -> &'static str {
+    let has = |table: &&&str| columns.are_in(&run.join(table));
+    TABLES.iter().find(has).copied().unwrap_or(HISTORY)
 }
 
 fn tables_of(
@@ -255,4 +284,31 @@ fn title_of(source: &Path) -> String {
     let known = folder.and_then(|folder| snapshots(&FileOpener, folder).ok());
     let known = known.and_then(|found| title(&FileOpener, &found[0].1).ok());
     known.unwrap_or_else(|| source.display().to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_found_in_all_tables_of_a_run() {
+        let run = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| std::fs::write(run.path().join(name), text).unwrap();
+        write("history.csv", "time,kinetic_energy\n0,1\n");
+        write(
+            "bodies.csv",
+            "time,body,kinetic_energy,velocity_x,velocity_y,velocity_z\n0,a,1,1,2,2\n",
+        );
+        write("gauges.csv", "time,gauge,pressure\n0,g,1\n");
+        for (columns, table) in [
+            ("time:kinetic_energy", "history.csv"),
+            ("time:velocity", "bodies.csv"),
+            ("time:kinetic_energy,velocity_z", "bodies.csv"),
+            ("time:pressure", "gauges.csv"),
+            ("time:nothing", "history.csv"),
+        ] {
+            let found = table_with(run.path(), &Columns::parse(columns).unwrap());
+            assert_eq!(found, table, "{columns}");
+        }
+    }
 }

@@ -143,35 +143,29 @@ fn write_array(frame: &Frame, content: &Content, out: &mut NewFile) -> Result<()
     Ok(())
 }
 
-/// Description of the whole: time, step, names of bodies, title.
+/// The time, and in a comment, since not all readers take arrays of texts, the title and the names of bodies.
 fn field_data(frame: &Frame) -> String {
-    let mut text = format!(
-        "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" \
-         format=\"ascii\">{:?}</DataArray>\n",
-        frame.snapshot.time
-    );
-    let names = frame.snapshot.bodies.iter().map(String::as_str);
-    strings(&mut text, "body_names", names);
-    strings(&mut text, "title", [frame.snapshot.title.as_str()]);
-    text.push_str("</FieldData>\n");
-    text
+    let snapshot = &frame.snapshot;
+    format!(
+        "{}<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" \
+         format=\"ascii\">{:?}</DataArray>\n</FieldData>\n",
+        comment(&snapshot.title, &snapshot.bodies),
+        snapshot.time
+    )
 }
 
-/// Strings are arrays of bytes, each with a zero at its end.
-fn strings<'a>(text: &mut String, name: &str, values: impl IntoIterator<Item = &'a str>) {
-    let values: Vec<&str> = values.into_iter().collect();
-    let count = values.len();
-    let _ = write!(
-        text,
-        "<Array type=\"String\" Name=\"{name}\" NumberOfTuples=\"{count}\" format=\"ascii\">"
-    );
-    for value in values {
-        let bytes = value.bytes().filter(|&byte| byte != 0).chain([0]);
-        bytes.for_each(|byte| {
-            let _ = write!(text, "{byte} ");
-        });
+/// A comment of XML, a line for the title and for each body.
+fn comment(title: &str, bodies: &[String]) -> String {
+    let mut text = format!("<!--\ntitle: {}\n", commented(title));
+    for (number, name) in bodies.iter().enumerate() {
+        let _ = writeln!(text, "body {number}: {}", commented(name));
     }
-    text.push_str("</Array>\n");
+    text + "-->\n"
+}
+
+/// A text as a comment of XML has it: on one line, without two hyphens.
+fn commented(text: &str) -> String {
+    escaped(text).replace('-', "\u{2010}")
 }
 
 /// The index of a series: times (s) and names of files beside it.
@@ -214,4 +208,18 @@ fn escaped(text: &str) -> String {
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comment_ends_where_it_shall() {
+        let text = comment("a --> b\n<x>", &["wall-1".to_owned(), "b&c".to_owned()]);
+        assert_eq!(
+            text,
+            "<!--\ntitle: a \u{2010}\u{2010}&gt; b_&lt;x&gt;\nbody 0: wall\u{2010}1\nbody 1: b&amp;c\n-->\n"
+        );
+    }
 }

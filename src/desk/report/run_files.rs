@@ -7,6 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use files::output::{OutputError, RunFolder, Sheet, Status, read_regular, read_small};
+pub use model::readable::with_unit;
 use model::readable::{Readable, short};
 
 /// The folder of a run. An unreadable text is a sentence that says so.
@@ -218,32 +219,14 @@ impl Rows {
     }
 }
 
-/// A number with its unit, for people; `–` if it is none.
-pub fn with_unit(value: f64, unit: &str) -> String {
-    if !value.is_finite() {
-        return "–".to_owned();
-    }
-    let unit = Readable::new(unit, value.abs());
-    format!("{}{}", short(value / unit.size), behind(&unit))
-}
-
-/// The same of a vector, with one unit.
+/// A vector with one unit, for people.
 pub fn vector_with_unit(components: &[f64], unit: &str) -> String {
     let largest = components
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let unit = Readable::new(unit, largest);
     let numbers: Vec<String> = components.iter().map(|x| short(x / unit.size)).collect();
-    format!("[{}]{}", numbers.join(", "), behind(&unit))
-}
-
-/// A unit behind its number: a power of ten multiplies it.
-fn behind(unit: &Readable) -> String {
-    match unit.name.as_str() {
-        "" => String::new(),
-        name if name.starts_with("10") => format!(" · {name}"),
-        name => format!(" {name}"),
-    }
+    format!("[{}]{}", numbers.join(", "), unit.behind())
 }
 
 /// A value of a case as people read it: texts as typed, tables as `key value, key value`.

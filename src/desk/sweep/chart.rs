@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::SweepError;
 use files::output::{OutputError, Sheet, read_small};
 
+use model::readable::with_unit;
 use plot::{Chart, Curve, Mark, Quantity, colour_of};
 
 /// Columns of a table that are no keys and no answers.
@@ -56,6 +57,19 @@ fn numbers(sheet: &Sheet, column: usize) -> impl Iterator<Item = Option<f64>> + 
     cells.map(|cell| cell?.parse::<f64>().ok())
 }
 
+/// A column's name as people write it.
+fn words(name: &str) -> String {
+    name.replace(['_', '.'], " ")
+}
+
+/// A cell as people write it: a number of SI units with one that fits.
+fn valued(text: &str, unit: &str) -> String {
+    match text.parse() {
+        Ok(number) => with_unit(number, unit),
+        Err(_) => text.to_owned(),
+    }
+}
+
 /// The chart of a column over the last of the keys that is a number.
 fn chart(sheet: &Sheet, keys: usize, y: usize) -> Option<Chart> {
     let is_number = |&k: &usize| numbers(sheet, k).all(|n| n.is_some());
@@ -81,7 +95,7 @@ fn chart(sheet: &Sheet, keys: usize, y: usize) -> Option<Chart> {
         return None;
     }
     let quantity = |k: usize| Quantity {
-        label: sheet.names[k].replace(['_', '.'], " "),
+        label: words(&sheet.names[k]),
         unit: sheet.units[k].trim_matches('-').to_owned(),
         room: true,
         ..Quantity::default()
@@ -95,9 +109,13 @@ fn chart(sheet: &Sheet, keys: usize, y: usize) -> Option<Chart> {
     for (k, of) in order.iter().enumerate() {
         let mut points = curves.remove(of).unwrap_or_default();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let named = of
-            .iter()
-            .map(|(k, text)| format!("{} {text}", sheet.names[*k]));
+        let named = of.iter().map(|(k, text)| {
+            format!(
+                "{} {}",
+                words(&sheet.names[*k]),
+                valued(text, sheet.units[*k].trim_matches('-'))
+            )
+        });
         let name = named.collect::<Vec<_>>().join(", ");
         let curve = |name: String, mark| Curve {
             name,

@@ -34,11 +34,11 @@ pub(super) fn find(
     });
     let (strains, scale, instructions) = (&*strains, sums.scale, instructions());
     let dimension = sums.dimension;
-    let means = &Scatter::new(&mut particles.neighbour_strain);
+    let found = &Scatter::new(&mut particles.neighbour_strain);
     let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
     with_scale!(scale, scale => chunks.for_each(|chunk| {
         let (motion, elsewhere) = (sources(lists, scale), &lists.elsewhere);
-        instructions.run(Means { chunk, motion, dimension, elsewhere, images, strains, means });
+        instructions.run(Means { chunk, motion, dimension, elsewhere, images, strains, found });
     }));
 }
 
@@ -52,7 +52,7 @@ struct Means<'a, S> {
     images: &'a [Image],
     /// Plastic strains of the images.
     strains: &'a [f64],
-    means: &'a Scatter<'a, f64>,
+    found: &'a Scatter<'a, f64>,
 }
 
 impl<S: PairScale> Vectorised for Means<'_, S> {
@@ -80,7 +80,7 @@ impl<S: PairScale> Vectorised for Means<'_, S> {
             };
             for (&place, mean) in cluster.valid().iter().zip(mean) {
                 // SAFETY: the particle belongs to this cluster alone, and this thread has the cluster.
-                unsafe { *self.means.slot(self.images[place as usize].slot()) = mean };
+                unsafe { *self.found.slot(self.images[place as usize].slot()) = mean };
             }
         }
     }

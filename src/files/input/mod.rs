@@ -21,6 +21,7 @@ mod resolved;
 mod schema;
 mod source;
 mod stl;
+mod title;
 mod triangles;
 mod validate;
 
@@ -94,9 +95,13 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<Case, InputError> {
 /// [`InputError::Invalid`] for the first thing in the text or in an override that is wrong.
 pub fn parse(name: &str, text: &str, overrides: &[String]) -> Result<Case, InputError> {
     with_sources(Some((name, text)), overrides, |places| {
-        let (params, resolved) = document::read(text, overrides, places)?;
+        let (params, mut resolved) = document::read(text, overrides, places)?;
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         let mut case = validate::case(&params, folder)?;
+        if let Some((title, text)) = title::filled(&resolved) {
+            names::check_title(&title, params.title.as_ref())?;
+            (case.title, resolved) = (title, text);
+        }
         case.resolved = resolved::with_files(resolved, folder, &case)?;
         Ok(case)
     })

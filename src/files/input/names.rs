@@ -43,7 +43,13 @@ pub fn check(name: &Spanned<String>, of: &str) -> Result<(), Diagnostic> {
 /// The title: any one line that a terminal can show.
 pub fn title(params: &CaseParams) -> Result<String, Diagnostic> {
     let text = params.title();
-    let at = || params.title.as_ref().map_or(0..0, Spanned::span);
+    check_title(&text, params.title.as_ref())?;
+    Ok(text)
+}
+
+/// Complains unless a text can be the title, which is `typed`.
+pub fn check_title(text: &str, typed: Option<&Spanned<String>>) -> Result<(), Diagnostic> {
+    let at = || typed.map_or(0..0, Spanned::span);
     if let Some(c) = text.chars().find(|c| !is_printable(*c)) {
         let what = format!(
             "`title` must be one line without control characters, found `{}`",
@@ -55,5 +61,5 @@ pub fn title(params: &CaseParams) -> Result<String, Diagnostic> {
         let what = format!("`title` can have {LONGEST_TITLE} characters at most");
         return Err(Diagnostic::new(at(), what));
     }
-    Ok(text)
+    Ok(())
 }

@@ -189,7 +189,11 @@ impl RunLock {
             }
             Presence::Unclear(who) => warnings.push(format!("the lock of {who} is ignored")),
         }
-        sign(&mut file, &here).map_err(OutputError::io("write", &path))?;
+        if let Err(error) = sign(&mut file, &here) {
+            // A lock without a name, as on a full disk, would tell the next run of a process that there is not.
+            let _ = fs::remove_file(&path);
+            return Err(OutputError::io("write", &path)(error));
+        }
         Ok(Self {
             path,
             file,

@@ -6,6 +6,8 @@ use model::{Body, Case, ContactMode};
 
 /// Fewer particles than this across the thinnest section resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
+/// Fewer than this across what strikes in three dimensions give rough figures.
+const ACROSS_PROJECTILE: f64 = 10.0;
 /// A stiffness of contact this many times above or below its default is a mistake.
 const FAR: f64 = 10.0;
 
@@ -73,18 +75,71 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
     }
 }
 
-/// Bodies with too few particles across.
-pub fn thin_sections(case: &Case, messages: &mut Vec<String>) {
-    for body in case.bodies.iter().filter(|body| body.rigid.is_none()) {
-        let across = thickness(body, case) / body.lattice.spacing;
-        // Rounding may add or remove a layer.
-        if across < ACROSS - 0.01 {
-            messages.push(format!(
-                "`{}` has {across:.1} particles across its thinnest part; fewer than {ACROSS} \
-                 resolve neither waves nor bending: make its spacing finer",
-                body.name
-            ));
+/// Particles across the thinnest part of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Across {
+    /// The body's index.
+    pub body: usize,
+    /// Particles across its thinnest part.
+    pub particles: f64,
+    /// The least that its figures need.
+    pub least: f64,
+}
+
+impl Across {
+    /// True if there are too few; rounding may add or remove a layer.
+    #[must_use]
+    pub fn is_thin(&self) -> bool {
+        self.particles < self.least - 0.01
+    }
+}
+
+/// Particles across each body that deforms.
+#[must_use]
+pub fn across(case: &Case, approaches: &[Approach]) -> Vec<Across> {
+    let mut meets = vec![false; case.bodies.len()];
+    for pair in approaches
+        .iter()
+        .filter(|pair| pair.time < case.run.end_time)
+    {
+        for body in pair.bodies {
+            meets[body] = true;
         }
+    }
+    // In the total form few particles bend as many do.
+    let strikes = |index: usize, body: &Body| {
+        case.dimension == 3 && meets[index] && !body.total && body.velocity.norm() > 0.0
+    };
+    let bodies = case.bodies.iter().enumerate();
+    bodies
+        .filter(|(_, body)| body.rigid.is_none())
+        .map(|(index, body)| Across {
+            body: index,
+            particles: thickness(body, case) / body.lattice.spacing,
+            least: if strikes(index, body) {
+                ACROSS_PROJECTILE
+            } else {
+                ACROSS
+            },
+        })
+        .collect()
+}
+
+/// Bodies with too few particles across.
+pub fn thin_sections(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
+    for across in across(case, approaches)
+        .iter()
+        .filter(|across| across.is_thin())
+    {
+        let reason = if across.least > ACROSS {
+            "of what strikes give rough figures"
+        } else {
+            "resolve neither waves nor bending"
+        };
+        messages.push(format!(
+            "`{}` has {:.1} particles across its thinnest part; fewer than {} {reason}: make its spacing finer",
+            case.bodies[across.body].name, across.particles, across.least
+        ));
     }
 }
 

@@ -12,6 +12,7 @@ mod steps;
 mod waves;
 
 pub use approach::{Approach, approaches};
+pub use case::{Across, across};
 pub use costs::{Costs, UNEVEN};
 pub use initial::beginning;
 pub use steps::{expected_step, expected_steps};
@@ -72,9 +73,9 @@ pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
 
 /// Advice on coarse bodies, one line each, which a coarse run may ignore.
 #[must_use]
-pub fn advice(case: &Case) -> Vec<String> {
+pub fn advice(case: &Case, approaches: &[Approach]) -> Vec<String> {
     let mut messages = Vec::new();
-    case::thin_sections(case, &mut messages);
+    case::thin_sections(case, approaches, &mut messages);
     messages
 }
 

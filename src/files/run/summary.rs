@@ -7,9 +7,10 @@ use serde_json::json;
 use super::load::load;
 use super::output_time::Seconds;
 use crate::output::{VERSION, commit, h5};
+use crate::preflight::{Across, across, approaches};
 use comm::{self, Comm};
 use engine::step::{Removed, Simulation, failed_mass};
-use model::SphForm;
+use model::{Case, SphForm};
 
 /// Times of a run.
 #[derive(Debug, Clone, Copy)]
@@ -84,8 +85,24 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "absorbing_zones": absorbing_zones(simulation),
         "contact_limited_steps": worst.contact_limited_steps,
     });
+    summary["particles_across"] = json!(particles_across(comm, &simulation.case));
     summary["left_total_form"] = json!(left_total_form(simulation));
     summary
+}
+
+/// Particles across each body that deforms, at the start, and the least that its figures need; on rank 0.
+fn particles_across<'a>(
+    comm: &Comm,
+    case: &'a Case,
+) -> Option<BTreeMap<&'a str, serde_json::Value>> {
+    comm.is_root().then(|| {
+        let bodies = across(case, &approaches(case)).into_iter();
+        let row = |across: Across| {
+            let figures = json!({ "particles": across.particles, "least": across.least });
+            (case.bodies[across.body].name.as_str(), figures)
+        };
+        bodies.map(row).collect()
+    })
 }
 
 /// Bodies that have left the total form, with the time (s) and the reason, if any had it.

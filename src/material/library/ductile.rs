@@ -29,7 +29,8 @@ const LESUER: &str = "Lesuer (2000), DOT/FAA/AR-00/25; not checked against the r
 const BORVIK: &str = "Børvik et al. (2001, 2002), Eur. J. Mech. A 20, 685 and Int. J. Impact Eng. 27, \
      37; their (1 + ε̇*)^C is taken as 1 + C ln ε̇*";
 const BORVIK_FAILURE: &str = "Børvik et al. (2001), Eur. J. Mech. A 20, 685; in 2002 D₄ is -.015";
-const BAND: &str = "fitted to plugs of two shots of Børvik et al. (1999), Int. J. Impact Eng. 22, 855";
+const BAND: &str =
+    "fitted to plugs of two shots of Børvik et al. (1999), Int. J. Impact Eng. 22, 855";
 const CLAUSEN: &str = "Clausen et al. (2004), Mater. Sci. Eng. A 364, 260, plates of 5083-H116; not \
      checked against the paper";
 const BRAR: &str = "Brar, Joshi & Harris (2009), AIP Conf. Proc. 1195, 945, of 7075-T651; not checked \

@@ -50,7 +50,7 @@ pub fn series(
             keys.push(table.texts(name)?);
         }
     }
-    if pair.is_some() && !PAIR.iter().all(|name| table.has(name)) {
+    if pair.is_some() && !has_pairs(table) {
         return Err("it has no pairs of bodies; contacts.csv of a run has".to_owned());
     }
     let count = table.len();
@@ -85,6 +85,12 @@ pub fn series(
         only.name.clear();
     }
     Ok(known)
+}
+
+/// True if the rows of a table are of pairs of bodies.
+#[must_use]
+pub fn has_pairs(table: &Table) -> bool {
+    PAIR.iter().all(|name| table.has(name))
 }
 
 /// Reads `A,B`.

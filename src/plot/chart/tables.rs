@@ -41,6 +41,15 @@ impl Columns {
             y,
         })
     }
+
+    /// Returns true if a table can be read and has all of them.
+    #[must_use]
+    pub fn are_in(&self, path: &Path) -> bool {
+        Table::read(path).is_ok_and(|table| {
+            let mut names = [&self.x].into_iter().chain(&self.y);
+            names.all(|name| series::unit(&table, name).is_ok())
+        })
+    }
 }
 
 /// Points that are drawn as such: a table, and its columns if they have other names.
@@ -106,9 +115,11 @@ impl Tables {
             title: self.title.clone(),
             ..Chart::default()
         };
+        let mut of_pairs = false;
         for (k, (name, path)) in self.tables.iter().enumerate() {
             let failed = |reason: String| wrong(path, reason);
             let table = Table::read_of(opener, path, &self.gauges)?;
+            of_pairs |= series::has_pairs(&table);
             let drawn: Vec<&str> = self.drawn().collect();
             let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if k == 0 {
@@ -130,7 +141,7 @@ impl Tables {
                 }
             }
         }
-        keep_what_is_seen(&mut chart.curves);
+        keep_what_is_seen(&mut chart.curves, if of_pairs { 1 } else { MANY });
         let curves = chart.curves.len();
         if self.logarithmic.contains(&true) {
             let marked = |curve: &Curve| Curve {
@@ -240,16 +251,16 @@ fn points(table: &Table, series: &Series, [x, y]: [&str; 2]) -> Result<Vec<[f64;
     Ok(series.rows.iter().map(|&row| [xs[row], ys[row]]).collect())
 }
 
-/// Curves without a number are left out, as of gauges that do not read the column. Of many curves
+/// Curves without a number are left out, as of gauges that do not read the column. Of more than `most` curves
 /// those that are zero throughout are left out too, as pairs of bodies that never meet; the others keep
 /// their colours in order.
-fn keep_what_is_seen(curves: &mut Vec<Curve>) {
+fn keep_what_is_seen(curves: &mut Vec<Curve>, most: usize) {
     let none = |curve: &Curve| curve.points.iter().all(|point| point[1].is_nan());
     if !curves.iter().all(none) {
         curves.retain(|curve| !none(curve));
     }
     let flat = |curve: &Curve| curve.points.iter().all(|point| point[1] == 0.0);
-    if curves.len() > MANY && !curves.iter().all(flat) {
+    if curves.len() > most && !curves.iter().all(flat) {
         curves.retain(|curve| !flat(curve));
         for (k, curve) in curves.iter_mut().enumerate() {
             curve.colour = colour::body(k);
@@ -260,14 +271,16 @@ fn keep_what_is_seen(curves: &mut Vec<Curve>) {
 /// As many curves as have colours of their own.
 const MANY: usize = 7;
 
-/// A column's name as people write it.
+/// A column's name as people write it: `plate.hole_diameter` is the hole diameter of a measure.
 fn words(name: &str) -> String {
-    name.replace('_', " ")
+    name.replace(['_', '.'], " ")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use model::Case;
+    use results::{OutputError, ReadError, Sheet, SnapshotReader};
 
     #[test]
     fn crossings_are_drawn_along_their_plane() {
@@ -275,6 +288,46 @@ mod tests {
         let path = folder.path().join("crossings.csv");
         std::fs::write(&path, "place_x,place_y,place_z\n1,0.5,3\n2,0.5,7\n").unwrap();
         assert_eq!(widest(&path).unwrap(), "place_x:place_z");
+    }
+
+    /// An [`Opener`] of nothing.
+    #[derive(Debug)]
+    struct Nothing;
+
+    impl Opener for Nothing {
+        fn snapshot(&self, _: &Path) -> Result<Box<dyn SnapshotReader>, ReadError> {
+            unreachable!("no snapshot is drawn")
+        }
+
+        fn gauges(&self, _: &Path, _: Option<&[String]>) -> Result<Option<Sheet>, OutputError> {
+            Ok(None)
+        }
+
+        fn case(&self, _: &Path) -> Result<Case, String> {
+            Err(String::new())
+        }
+    }
+
+    #[test]
+    fn pairs_that_never_meet_are_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("contacts.csv");
+        let text = "time,body_a,body_b,force\n0,ball,plate,0\n0,ball,wall,0\n0,plate,wall,0\n\
+                    1,ball,plate,7\n1,ball,wall,0\n1,plate,wall,0\n";
+        std::fs::write(&path, text).unwrap();
+        let tables = Tables {
+            tables: vec![(String::new(), path)],
+            columns: Columns::parse("time:force").unwrap(),
+            ..Tables::default()
+        };
+        let chart = tables.chart(&Nothing).unwrap();
+        let names: Vec<&str> = chart.curves.iter().map(|curve| &curve.name[..]).collect();
+        assert_eq!(names, ["ball – plate"]);
+    }
+
+    #[test]
+    fn columns_of_measures_are_told_in_words() {
+        assert_eq!(words("plate.hole_diameter"), "plate hole diameter");
     }
 
     #[test]

@@ -232,6 +232,44 @@ mod tests {
             .unwrap()
     }
 
+    /// Matter without order has no holes, and a gap as wide as a particle stays.
+    #[test]
+    fn glass_is_solid() {
+        let mut random = 1_u32;
+        let mut shift = || {
+            random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            0.6 * (f64::from(random >> 16) / 65_536.0 - 0.5)
+        };
+        let mut cells = Vec::new();
+        for k in 0..10 * 10 * 4 {
+            let at = |n: i32, middle: f64| f64::from(n) - middle;
+            let [x, y, z] = [at(k % 10, 4.5), at(k / 10 % 10, 4.5), at(k / 100, 1.5)];
+            let apart = if x > 0.0 { 1.6 } else { 0.0 };
+            let place = [x + apart + shift(), y + shift()];
+            cells.push(cell(place, z + shift(), 0));
+        }
+        let holes = |cells: &[Cell]| {
+            let tiles = Tiles::new(cells, VIEW, 0.01);
+            let places = (0..2000).map(|k| {
+                [
+                    -3.5 + 0.05 * f64::from(k % 50),
+                    -3.0 + 0.15 * f64::from(k / 50),
+                ]
+            });
+            places.filter(|at| tiles.sample(*at).is_none()).count()
+        };
+        let gap = |cells: &[Cell]| {
+            let tiles = Tiles::new(cells, VIEW, 0.01);
+            (-60..60).all(|k| tiles.sample([0.8, 0.05 * f64::from(k)]).is_none())
+        };
+        assert!(holes(&cells) > 0, "balls leave holes");
+        for cell in &mut cells {
+            cell.shape = Shape::dense(1.0, 3);
+        }
+        assert_eq!(holes(&cells), 0);
+        assert!(gap(&cells));
+    }
+
     #[test]
     fn a_free_surface_is_half_a_spacing_outside() {
         for (flat, shift) in [(true, 0.0), (false, 0.0), (false, 0.25), (false, 0.5)] {

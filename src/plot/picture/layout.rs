@@ -45,7 +45,7 @@ impl Layout {
         has_axes: bool,
     ) -> Self {
         let view = view.drawn();
-        let unit = Readable::new("m", view.reach());
+        let unit = Readable::axes(view.reach());
         let bar = if has_bar { ColourBar::room(style) } else { 0.0 };
         // The numbers beside the panels are known once the scale is.
         let guess = if has_axes { 100.0 * style.unit } else { 0.0 };

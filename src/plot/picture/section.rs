@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::cells::Cell;
 use super::view::View;
 use crate::PlotError;
+use crate::snapshots::bulk::{Bulk, joined};
 use crate::snapshots::field::Drawn;
 use crate::snapshots::images::{Image, Mirrors};
 use crate::snapshots::plane::Plane;
@@ -32,6 +33,8 @@ pub struct Section {
     /// Particles: of a cut all that reach the plane, body by body; of a slice the nearest to the
     /// plane last, so that they are drawn on top.
     pub cells: Vec<Cell>,
+    /// What of it a picture frames along both axes (m).
+    ends: [[f64; 2]; 2],
 }
 
 /// The definition of a section.
@@ -68,6 +71,7 @@ impl Cut {
             DrawnAs::Particles => self.thickness.unwrap_or(2.0 * coarsest),
         };
         let mut cells = Vec::new();
+        let mut bulk = Bulk::default();
         let mut images = Vec::new();
         for chunk in snapshot.chunks() {
             let points = snapshot.file.points(chunk.clone())?;
@@ -108,13 +112,19 @@ impl Cut {
                         value: bears.then_some(image.signed(value)),
                     })
                 };
-                cells.extend(images.iter().filter_map(cell));
+                for cell in images.iter().filter_map(cell) {
+                    if cell.is_cut() {
+                        bulk.add(cell.body, cell.at, cell.radii(), Some(size * size));
+                    }
+                    cells.push(cell);
+                }
             }
         }
         self.arrange(&mut cells);
         Ok(Section {
             time: snapshot.time,
             cells,
+            ends: bulk.ends(),
         })
     }
 
@@ -180,6 +190,9 @@ impl Cut {
     /// The error that no particle lies in the section.
     pub fn miss(&self, snapshot: &Snapshot) -> PlotError {
         let mut extent = snapshot.extent().unwrap_or_default()[self.plane.axis.index()];
+        if extent.lowest > extent.highest {
+            return PlotError::Options("the snapshot holds no matter: all has left the model");
+        }
         for plane in snapshot
             .symmetry
             .iter()
@@ -224,16 +237,11 @@ impl Cut {
     }
 }
 
-/// A view of all of some sections with a small border.
+/// A view of the bodies of some sections, without single specks, with a small border.
 pub fn view(sections: &[Section]) -> View {
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let mut reach = [none; 2];
-    let cells = sections.iter().flat_map(|s| &s.cells);
-    for cell in cells.filter(|cell| cell.is_cut()) {
-        for ((span, at), radius) in reach.iter_mut().zip(cell.at).zip(cell.radii()) {
-            *span = [span[0].min(at - radius), span[1].max(at + radius)];
-        }
-    }
+    let ends = sections.iter().map(|section| section.ends);
+    let reach = ends.reduce(|a, b| [joined(a[0], b[0]), joined(a[1], b[1])]);
+    let reach = reach.unwrap_or_default();
     let longest = reach.iter().map(|s| s[1] - s[0]).fold(0.0, f64::max);
     let border = 0.03 * longest;
     let [x, y] = reach.map(|span| [span[0] - border, span[1] + border]);

@@ -1,5 +1,7 @@
 //! The nearest particle to the viewer at each pixel of a panel.
 
+use rayon::prelude::*;
+
 use super::panel::Panel;
 use crate::canvas::{PAPER, Rgb};
 use crate::colour;
@@ -104,6 +106,32 @@ impl Image {
                 }
             }
         }
+    }
+
+    /// Returns true if discs of a size (m) are squares, which leave no gaps between them.
+    pub fn is_small(panel: &Panel, size: f64) -> bool {
+        0.5 * size * panel.scale() < SMALL
+    }
+
+    /// Fills the pixels of the panel's plane at which `body_at` finds a body, by their places along the picture's axes (m).
+    pub fn fill(&mut self, body_at: impl Fn([f64; 2]) -> Option<usize> + Sync) {
+        let panel = self.panel;
+        let [right, up] = panel.axes();
+        let along = panel.plane.position;
+        let depth = (-panel.towards() * along) as f32;
+        let rows = self.hits.par_chunks_mut(self.columns).enumerate();
+        rows.for_each(|(row, hits)| {
+            for (column, hit) in hits.iter_mut().enumerate() {
+                let point = panel.point(column as f64 + 0.5, row as f64 + 0.5, along);
+                if let Some(body) = body_at([point[right], point[up]]) {
+                    *hit = Hit {
+                        depth,
+                        body: u16::try_from(body).unwrap_or(NOBODY - 1),
+                        tone: 255,
+                    };
+                }
+            }
+        });
     }
 
     /// Takes in what others have found.

@@ -129,7 +129,7 @@ impl<'a> Page<'a> {
         top: f32,
     ) -> Self {
         let view = Panel::view_of(plane.axis, &visible);
-        let unit = Readable::new("m", view.reach());
+        let unit = Readable::axes(view.reach());
         // The numbers beside the section are known once the scale is.
         let room = width - 130.0 * style.unit - 2.0 * style.margin();
         let fit = |width: f32, height: f32, size: [f64; 2]| {
@@ -202,14 +202,12 @@ impl<'a> Page<'a> {
     fn draw(&self, canvas: &mut Canvas, particles: f64) -> Result<(), PlotError> {
         let case = self.case;
         let velocities = marks::velocities(case);
-        let (section, images) = if case.dimension == 3 {
-            let section = sites::section(case, &self.section);
+        let section = sites::section(case, &self.section, particles);
+        let mut images = Vec::new();
+        if case.dimension == 3 {
             self.require_some(&section)?;
-            (section, sites::views(case, &self.views, particles))
-        } else {
-            let all = sites::views(case, &[self.section], particles).remove(0);
-            (all, Vec::new())
-        };
+            images = sites::views(case, &self.views, particles);
+        }
         let line = 2.5 * self.style.unit;
         let cuts = case.loads.surfaces.iter();
         let cuts = cuts.flat_map(|surface| surfaces::cut(surface, &self.section, line));

@@ -5,6 +5,10 @@ use rayon::prelude::*;
 
 use super::image::Image;
 use super::panel::Panel;
+use crate::picture::cells::{Cell, Tiles};
+use crate::snapshots::field::Drawn;
+use crate::snapshots::images::Mirrors;
+use crate::snapshots::shape::Shape;
 use model::{Body, Case, edge};
 use populate::{self, Brick};
 
@@ -116,7 +120,18 @@ fn draw(
 
 /// All particles as each panel shows them.
 pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
+    views_of(case, panels, particles, |_| true)
+}
+
+/// Particles of some bodies as each panel shows them.
+fn views_of(
+    case: &Case,
+    panels: &[Panel],
+    particles: f64,
+    shows: impl Fn(&Body) -> bool,
+) -> Vec<Image> {
     let bodies = case.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(_, body)| shows(body));
     let layers = bodies.filter_map(|(index, body)| Layers::new(index, body, case, particles));
     let layers: Vec<Layers> = layers.collect();
     let slabs: Vec<_> = layers.iter().flat_map(Layers::slabs).collect();
@@ -124,14 +139,78 @@ pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
     draw(case, panels, &slabs, every as f64, |_, _, _| true)
 }
 
-/// Half the thickness of a section (spacings): particles of a file need not be in layers, and a
+/// Half the thickness of a section (spacings): particles without order are not in layers, and a
 /// stretched body has gaps.
 fn half_thickness(body: &Body) -> f64 {
-    if body.cloud().is_some() { 0.75 } else { 0.5 }
+    if body.cloud().is_some() || populate::moves_sites(body) {
+        0.75
+    } else {
+        0.5
+    }
 }
 
-/// The particles within half a spacing of a panel's plane; at a symmetry plane those next to it.
-pub fn section(case: &Case, panel: &Panel) -> Image {
+/// True if the particles of a body are so large that a section shows the matter which they fill.
+fn is_filled(case: &Case, body: &Body, panel: &Panel) -> bool {
+    case.dimension > 1 && !Image::is_small(panel, body.lattice.spacing)
+}
+
+/// The matter at a panel's plane, or of a flat model of so many particles all of it.
+pub fn section(case: &Case, panel: &Panel, particles: f64) -> Image {
+    let mut image = if case.dimension == 3 {
+        layer(case, panel)
+    } else {
+        let shows = |body: &Body| !is_filled(case, body, panel);
+        views_of(case, &[*panel], particles, shows).remove(0)
+    };
+    let cells = cells(case, panel);
+    if !cells.is_empty() {
+        let tiles = Tiles::new(&cells, panel.view, 1.0 / panel.scale());
+        let axes = panel.axes();
+        image.fill(|at| {
+            let images_alone = case.symmetry.iter().any(|plane| {
+                let across = axes.iter().position(|&axis| axis == plane.axis.index());
+                across.is_some_and(|k| at[k] < plane.position)
+            });
+            let inside = |a: usize, span: [f64; 2]| at[a] >= span[0] && at[a] <= span[1];
+            let seen = !images_alone && inside(0, panel.view.x) && inside(1, panel.view.y);
+            seen.then(|| tiles.sample(at).map(|sample| sample.body))?
+        });
+    }
+    image
+}
+
+/// The particles of bodies that are filled which reach a panel's plane, with their images, body by body.
+fn cells(case: &Case, panel: &Panel) -> Vec<Cell> {
+    let (axis, position) = (panel.plane.axis.index(), panel.plane.position);
+    let mirrors = Mirrors::new(case.symmetry.clone(), &Drawn::Body);
+    let [right, up] = panel.axes();
+    let (mut cells, mut images) = (Vec::new(), Vec::new());
+    for (index, body) in case.bodies.iter().enumerate() {
+        if !is_filled(case, body, panel) {
+            continue;
+        }
+        let reach = Shape::dense(body.lattice.coarsest(), case.dimension).reach(axis);
+        let slab = Brick::slab(axis, position - reach, position + reach);
+        let slab = (case.dimension == 3).then_some(slab);
+        for site in populate::sites(body, case.dimension, &case.symmetry, slab) {
+            let size = body.lattice.spacing * edge(site.share, case.dimension);
+            let shape = Shape::dense(size, case.dimension);
+            mirrors.reflect(&site.position, &shape, &mut images);
+            cells.extend(images.iter().map(|image| Cell {
+                at: [image.point[right], image.point[up]],
+                depth: image.point[axis] - position,
+                shape: image.shape,
+                body: index,
+                value: None,
+            }));
+        }
+    }
+    cells
+}
+
+/// The particles of bodies that are not filled within half a spacing of a panel's plane; at a symmetry plane those next
+/// to it.
+fn layer(case: &Case, panel: &Panel) -> Image {
     let axis = panel.plane.axis.index();
     let slab = |body: &Body| {
         let (position, spacing) = (panel.plane.position, body.lattice.coarsest());
@@ -146,6 +225,7 @@ pub fn section(case: &Case, panel: &Panel) -> Image {
         Brick::slab(axis, lower - nudge, lower + 2.0 * reach - nudge)
     };
     let bodies = case.bodies.iter().enumerate();
+    let bodies = bodies.filter(|(_, body)| !is_filled(case, body, panel));
     let slabs: Vec<_> = bodies.map(|(index, body)| (index, slab(body))).collect();
     // Particles finer than the coarsest are in the section only if they are as near.
     let (plane, widest) = (panel.plane.position, 1.0 + 1e-6);

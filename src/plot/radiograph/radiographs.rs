@@ -31,6 +31,10 @@ use results::Opener;
 /// Unit of the drawn quantity.
 const UNIT: &str = "kg/m^2";
 
+/// The darkest colour is for this many times what a quarter of the pixels with matter fall short of: edges of plates
+/// are black, as in a flash X-ray, and debris is seen.
+const DARKEST: f64 = 8.0;
+
 /// The message for a flat model.
 const FLAT: &str = "a radiograph needs a model of three dimensions: this one has no depth";
 
@@ -41,7 +45,7 @@ pub struct RadiographRequest {
     pub along: String,
     /// `LEFT:RIGHT,BOTTOM:TOP`; everything if absent.
     pub part: Option<String>,
-    /// `LOW:HIGH` of the colours; from zero to the largest but a few if absent.
+    /// `LOW:HIGH` of the colours; if absent from zero to the largest, or to less where most of the matter is thin.
     pub range: Option<String>,
     /// `true` to reflect at planes of symmetry.
     pub mirror: bool,
@@ -195,11 +199,18 @@ impl Radiographs {
             }
         }
         let all = sampled.scale(self.range);
-        let low = self.range.map_or(0.0, |[low, _]| low);
-        let scale = Scale::grey([low, all.high], all.above);
+        let [low, high] = self
+            .range
+            .unwrap_or_else(|| [0.0, darkest(&sampled, all.high)]);
+        let scale = Scale::grey([low, high], all.above || high < all.high);
         let bar = ColourBar::new(scale, "mass per area", UNIT, false);
         Ok(self.colours.get_or_init(|| Colours::Bar(bar)))
     }
+}
+
+/// The value of black for masses per area of which all but a few are at most `high`.
+fn darkest(covered: &Sampled, high: f64) -> f64 {
+    high.min(DARKEST * covered.quantile(0.25))
 }
 
 impl Sequence for Radiographs {
@@ -243,5 +254,24 @@ impl Sequence for Radiographs {
             }
             draw_axes(canvas, layout, k, self.axes);
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[expect(clippy::float_cmp, reason = "products of small numbers are exact")]
+    fn debris_is_seen_beside_plates_and_a_lone_body_keeps_its_range() {
+        let of = |values: &[f64]| {
+            let mut covered = Sampled::default();
+            covered.extend(values.iter().copied(), values.len());
+            darkest(&covered, 256.0)
+        };
+        let debris = [vec![256.0; 60], vec![1.0; 40]].concat();
+        assert_eq!(of(&debris), 8.0);
+        let plate = [vec![256.0; 90], vec![1.0; 10]].concat();
+        assert_eq!(of(&plate), 256.0);
     }
 }

@@ -10,9 +10,10 @@ use super::camera::Camera;
 use super::cut::{Cuts, takes};
 use crate::PlotError;
 use crate::picture::view::View;
+use crate::snapshots::bulk::{Bulk, joined};
 use crate::snapshots::field::Drawn;
 use crate::snapshots::grains::{Grain, PORTION, Selection};
-use crate::snapshots::sample::Sampled;
+use crate::snapshots::sample::{Sampled, every};
 use crate::snapshots::snapshot::Snapshot;
 use crate::snapshots::source::Source;
 use results::Opener;
@@ -22,9 +23,10 @@ use results::Opener;
 pub struct Survey {
     /// Reach of a particle, in its own sizes.
     sizes: f64,
-    /// Lowest and highest place along the picture's axes: to the right, upwards, towards the viewer
-    /// (m).
-    reach: [[f64; 2]; 3],
+    /// Lowest and highest place of what is framed along the picture's axes (m): to the right, upwards.
+    ends: [[f64; 2]; 2],
+    /// Lowest and highest place towards the viewer (m).
+    depth: [f64; 2],
     /// The values.
     pub values: Sampled,
     /// The bodies that there are.
@@ -39,14 +41,15 @@ pub struct Survey {
 pub type Numbered = (PathBuf, Vec<usize>);
 
 /// Nowhere.
-const NONE: [[f64; 2]; 3] = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 impl Survey {
     /// Of no snapshot, whose particles reach `sizes` of their sizes far.
     pub fn new(sizes: f64) -> Self {
         Self {
             sizes,
-            reach: NONE,
+            ends: [NONE; 2],
+            depth: NONE,
             values: Sampled::default(),
             bodies: BTreeSet::new(),
             times: Vec::new(),
@@ -93,51 +96,54 @@ impl Survey {
         let mirrors = selection.mirrors(snapshot);
         let slopes = cuts.slopes(camera);
         let particles = snapshot.file.particles();
+        let every = every(particles);
+        let mut bulk = Bulk::default();
+        let mut values = Vec::new();
         for rows in snapshot.chunks() {
             let grains = selection.grains(snapshot, numbers, rows)?;
-            let portion = |part: &[Grain]| {
+            let portion = |(first, part): (usize, &[Grain])| {
                 let mut images = Vec::new();
-                let mut reach = NONE;
+                let (mut bulk, mut depth) = (Bulk::default(), NONE);
                 let mut values = Vec::new();
-                let mut bodies = BTreeSet::new();
-                for grain in part {
+                for (k, grain) in (first * PORTION..).zip(part) {
                     mirrors.reflect(&grain.point, &grain.shape, &mut images);
                     let bears =
                         selection.drawn != Drawn::Body && !selection.bodies.rigid[grain.body];
+                    let matter = k.is_multiple_of(every).then(|| grain.first.powi(3));
                     for image in &images {
-                        let at = camera.project(&image.point);
-                        if takes(&slopes, &at) {
+                        let [x, y, z] = camera.project(&image.point);
+                        if takes(&slopes, &[x, y, z]) {
                             continue;
                         }
-                        bodies.insert(grain.body);
                         let shape = camera.shape(&image.shape);
-                        for (k, (reach, at)) in reach.iter_mut().zip(at).enumerate() {
-                            let radius = self.sizes * shape.size(k);
-                            *reach = [reach[0].min(at - radius), reach[1].max(at + radius)];
-                        }
+                        let radius = |axis| self.sizes * shape.size(axis);
+                        bulk.add(grain.body, [x, y], [radius(0), radius(1)], matter);
+                        depth = joined(depth, [z - radius(2), z + radius(2)]);
                         if bears {
                             values.push(image.signed(grain.value));
                         }
                     }
                 }
-                (reach, values, bodies)
+                (bulk, depth, values)
             };
-            let portions: Vec<_> = grains.par_chunks(PORTION).map(portion).collect();
-            for (reach, _, bodies) in &portions {
-                self.bodies.extend(bodies);
-                for (own, other) in self.reach.iter_mut().zip(reach) {
-                    *own = [own[0].min(other[0]), own[1].max(other[1])];
-                }
+            let portions = grains.par_chunks(PORTION).enumerate().map(portion);
+            for (part, depth, own) in portions.collect::<Vec<_>>() {
+                bulk.join(part);
+                self.depth = joined(self.depth, depth);
+                values.extend(own);
             }
-            let values = portions.into_iter().flat_map(|(_, values, _)| values);
-            self.values.extend(values, particles);
+            self.values.extend(values.drain(..), particles);
+        }
+        self.bodies.extend(bulk.bodies());
+        for (own, other) in self.ends.iter_mut().zip(bulk.ends()) {
+            *own = joined(*own, other);
         }
         Ok(())
     }
 
-    /// All that there is with a small border; none if there is nothing.
+    /// The bodies, without single specks, with a small border; none if there is nothing.
     pub fn view(&self) -> Option<View> {
-        let [x, y, _] = self.reach;
+        let [x, y] = self.ends;
         let longest = (x[1] - x[0]).max(y[1] - y[0]);
         let border = 0.02 * longest;
         let [x, y] = [x, y].map(|span| [span[0] - border, span[1] + border]);
@@ -151,6 +157,6 @@ impl Survey {
 
     /// The middle along the line of sight (m).
     pub fn depth(&self) -> f64 {
-        0.5 * (self.reach[2][0] + self.reach[2][1])
+        0.5 * (self.depth[0] + self.depth[1])
     }
 }

@@ -83,14 +83,14 @@ pub fn front(
         for rows in snapshot.chunks() {
             let bodies = snapshot.body_of(rows.clone())?;
             let bearers = Drawn::Body.bearers(&snapshot, rows.clone())?;
-            let shapes = snapshot.shapes(rows.clone(), &bodies)?;
-            let all = snapshot.file.points(rows)?.into_iter().zip(shapes);
+            let images = snapshot.images(rows.clone(), &bodies)?;
+            let all = snapshot.file.points(rows)?.into_iter().zip(images);
             let all = all.zip(bodies).zip(bearers);
-            for (((mut point, shape), of), bears) in all {
+            for (((mut point, image), of), bears) in all {
                 if bears && of == wanted {
                     point[axis] *= sign;
                     points.push(point);
-                    whole.extend((shape.is_whole()).then(|| point[axis] + 0.5 * shape.size(axis)));
+                    whole.extend(image.map(|image| point[axis] + 0.5 * image.size(axis)));
                 }
             }
         }

@@ -22,6 +22,8 @@ pub struct Grain {
     pub point: [f64; 3],
     /// Its shape.
     pub shape: Shape,
+    /// Its size at the start (m).
+    pub first: f64,
     /// Number of its body in the picture.
     pub body: usize,
     /// The drawn number in its own unit; that of a body is 0.
@@ -124,6 +126,7 @@ impl Selection {
         let points = snapshot.file.points(rows.clone())?;
         let bodies = snapshot.body_of(rows.clone())?;
         let shapes = snapshot.shapes(rows.clone(), &bodies)?;
+        let sizes = snapshot.first_sizes(rows.clone(), &bodies)?;
         let bearers = self.drawn.bearers(snapshot, rows)?;
         let is_drawn: Vec<bool> = numbers.iter().map(|&n| self.bodies.shows(n)).collect();
         let grain = |k: usize| {
@@ -132,6 +135,7 @@ impl Selection {
             (bearers[k] && is_drawn[body] && known).then(|| Grain {
                 point,
                 shape: shapes[k],
+                first: sizes[k],
                 body: numbers[body],
                 value: values[k],
             })

@@ -1,6 +1,7 @@
 //! Snapshots, as charts and pictures take them.
 
 pub mod bodies;
+pub mod bulk;
 pub mod extent;
 pub mod field;
 pub mod front;

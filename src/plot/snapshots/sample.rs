@@ -14,10 +14,16 @@ pub struct Sampled {
     pub lost: bool,
 }
 
+/// Of how many of a snapshot's particles one is taken.
+#[must_use]
+pub fn every(particles: usize) -> usize {
+    particles.div_ceil(MOST).max(1)
+}
+
 impl Sampled {
     /// Takes up some of the values of a snapshot of so many particles.
     pub fn extend(&mut self, values: impl Iterator<Item = f64>, particles: usize) {
-        let every = particles.div_ceil(MOST).max(1);
+        let every = every(particles);
         for (k, value) in values.enumerate() {
             if !value.is_finite() {
                 self.lost = true;
@@ -29,6 +35,20 @@ impl Sampled {
                 self.values.push(value);
             }
         }
+    }
+
+    /// The value that a share of all do not reach; infinite without any.
+    #[must_use]
+    pub fn quantile(&self, share: f64) -> f64 {
+        let mut sorted = self.values.clone();
+        sorted.sort_by(f64::total_cmp);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a share of a length"
+        )]
+        let at = (share * sorted.len() as f64) as usize;
+        sorted.get(at).copied().unwrap_or(f64::INFINITY)
     }
 
     /// The scale over a range, or over all.

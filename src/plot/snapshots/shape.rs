@@ -13,8 +13,8 @@
 //! the outermost layer, and the sum inside is two or more, without holes. A lattice that is deformed evenly is drawn as
 //! the deformed picture of it.
 //!
-//! Particles with deformation gradients are of a body that has not torn. There a place is filled as well where
-//! they are around it: where the mean of 1 − r²/4 s² over r < 2 s is more than [`AROUND`] of that in full matter. On a free
+//! Particles with deformation gradients are of a body that has not torn, and those no less dense than at the start are in the
+//! midst of matter, which may be glass without order. There a place is filled as well where they are around it: where the mean of 1 − r²/4 s² over r < 2 s is more than [`AROUND`] of that in full matter. On a free
 //! surface it is a half.
 
 use numerics::ellipsoid::{Ellipsoid, MOST};
@@ -39,7 +39,7 @@ const FULL: [f64; 3] = {
 pub struct Shape {
     /// A ball of radius s, or what has become of it.
     pub ellipsoid: Ellipsoid,
-    /// What one such particle in the middle of a place is of all around it that fills it; zero if its body may have torn.
+    /// What one such particle in the middle of a place is of all around it that fills it; zero if it may lie apart.
     around: f64,
 }
 
@@ -53,25 +53,30 @@ impl Shape {
         }
     }
 
+    /// A ball of a size s (m) in the midst of matter, in a model of some dimensions.
+    #[must_use]
+    pub fn dense(size: f64, dimension: usize) -> Self {
+        Self {
+            ellipsoid: Ellipsoid::ball(size),
+            around: around(dimension),
+        }
+    }
+
     /// What a deformation gradient makes of a ball of the first size (m), in a model of some dimensions; none if there is no
     /// gradient.
     #[must_use]
     pub fn image(first: f64, gradient: &[f64; 9], dimension: usize) -> Option<Self> {
         let ellipsoid = Ellipsoid::image(first, gradient)?;
-        let around = 1.0 / (AROUND * FULL[dimension.clamp(1, 3) - 1]);
-        Some(Self { ellipsoid, around })
+        Some(Self {
+            ellipsoid,
+            around: around(dimension),
+        })
     }
 
     /// The farthest that a particle reaches whose first size, or present size if it has no gradient, are at most these (m).
     #[must_use]
     pub fn farthest(first: f64, present: f64) -> f64 {
         (WIDE * MOST * first).max(REACH * present)
-    }
-
-    /// True if its body has not torn.
-    #[must_use]
-    pub fn is_whole(&self) -> bool {
-        self.around > 0.0
     }
 
     /// The same along three unit vectors.
@@ -97,9 +102,14 @@ impl Shape {
     /// Places farther than this along an axis (m) it has no part in.
     #[must_use]
     pub fn reach(&self, axis: usize) -> f64 {
-        let sizes = if self.is_whole() { WIDE } else { REACH };
+        let sizes = if self.around > 0.0 { WIDE } else { REACH };
         sizes * self.size(axis)
     }
+}
+
+/// What one particle in the middle of a place is of all that fills it.
+fn around(dimension: usize) -> f64 {
+    1.0 / (AROUND * FULL[dimension.clamp(1, 3) - 1])
 }
 
 /// How far particles fill a place.

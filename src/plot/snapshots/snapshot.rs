@@ -46,6 +46,9 @@ pub struct Snapshot {
 /// particles do not know of each other, however thin they are.
 const LARGEST: f64 = 4.0;
 
+/// Largest size over that at the start of a particle in the midst of matter, of 97 % of the initial density.
+const DENSE: f64 = 1.01;
+
 /// The field of deformation gradients, zero where a body has none.
 const DEFORMATION: &str = "deformation_gradient";
 
@@ -248,17 +251,44 @@ impl Snapshot {
     /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
     pub fn shapes(&self, rows: Range<usize>, bodies: &[usize]) -> Result<Vec<Shape>, PlotError> {
         let sizes = self.sizes(rows.clone(), bodies)?.into_iter();
+        let first = self.first_sizes(rows.clone(), bodies)?.into_iter();
+        let images = self.images(rows, bodies)?.into_iter();
+        let dimension = self.dimension();
+        let ball = |size: f64, first: f64| {
+            if size <= DENSE * first {
+                Shape::dense(size, dimension)
+            } else {
+                Shape::ball(size)
+            }
+        };
+        let all = sizes.zip(first).zip(images);
+        Ok(all
+            .map(|((size, first), image)| image.unwrap_or_else(|| ball(size, first)))
+            .collect())
+    }
+
+    /// What the deformation gradients of some particles make of balls of their first spacing; none of those without.
+    ///
+    /// # Errors
+    /// [`PlotError::Read`] if the snapshot cannot be read, [`PlotError::Snapshot`] if what it holds makes no sense.
+    pub fn images(
+        &self,
+        rows: Range<usize>,
+        bodies: &[usize],
+    ) -> Result<Vec<Option<Shape>>, PlotError> {
         if !self.deforms {
-            return Ok(sizes.map(Shape::ball).collect());
+            return Ok(vec![None; rows.len()]);
         }
         let first = self.first_sizes(rows.clone(), bodies)?;
         let gradients = self.file.values(DEFORMATION, rows)?;
-        let dimension = usize::try_from(self.dimension).unwrap_or(3);
-        let all = sizes.zip(first).zip(gradients.as_chunks::<9>().0);
-        let shape = |((size, first), gradient): ((f64, f64), &[f64; 9])| {
-            Shape::image(first, gradient, dimension).unwrap_or_else(|| Shape::ball(size))
-        };
-        Ok(all.map(shape).collect())
+        let all = first.into_iter().zip(gradients.as_chunks::<9>().0);
+        let image =
+            |(first, gradient): (f64, &[f64; 9])| Shape::image(first, gradient, self.dimension());
+        Ok(all.map(image).collect())
+    }
+
+    fn dimension(&self) -> usize {
+        usize::try_from(self.dimension).unwrap_or(3)
     }
 
     /// Masses of some particles (kg; per metre or square metre of a flat model): those that the

@@ -4,6 +4,7 @@ use crate::report::html::{Html, missing, note, table};
 use crate::report::run_files::{Rows, Run};
 use files::output::Phase;
 use model::readable::short;
+use std::fmt::Write as _;
 
 /// A figure against its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,6 +12,8 @@ enum Outcome {
     Within,
     Beyond,
     Unknown,
+    /// No bound fits every case: the reader judges.
+    Open,
 }
 
 impl Outcome {
@@ -28,6 +31,7 @@ impl Outcome {
             Self::Within => ("badge within", "✓ within"),
             Self::Beyond => ("badge beyond", "✗ beyond"),
             Self::Unknown => ("badge untold", "– not told"),
+            Self::Open => ("badge untold", "? to judge"),
         };
         Html::element("span", &[("class", class)], Html::text(word))
     }
@@ -35,7 +39,7 @@ impl Outcome {
 
 /// A figure and its bound.
 struct Check {
-    what: &'static str,
+    what: String,
     value: String,
     bound: &'static str,
     source: &'static str,
@@ -57,6 +61,12 @@ const MAIN_JOB: &str = "book, Validation: the main job";
 const CONTACT: &str = "book, Contact: the contact defect";
 const OUTPUT: &str = "book, Output: summary.json";
 const LAWS: &str = "book, Laws: nothing is lost in silence";
+const SPACING: &str = "book, Choose spacing";
+const PLATES: &str = "book, Measures: plates";
+const FAILED: &str = "book, Failure: what failed matter keeps";
+
+/// Bodies that a row of the table names at most.
+const NAMED: usize = 3;
 
 /// The bounds of the book.
 const BOUNDS: [Bound; 8] = [
@@ -135,6 +145,9 @@ pub fn render(run: &Run) -> Html {
     checks.extend(BOUNDS.iter().filter(applies).map(|bound| check(run, bound)));
     checks.insert(checks.len().min(5), nearest(run));
     checks.push(mass(run));
+    checks.push(across(run));
+    checks.extend(unfinished(run));
+    checks.extend(failed(run));
     let mut page = headline(&checks);
     if let Err(reason) = &run.summary {
         page.push(missing(&format!("Most figures are not told: {reason}.")));
@@ -142,7 +155,7 @@ pub fn render(run: &Run) -> Html {
     let row = |check: &Check| {
         vec![
             check.outcome.badge(),
-            Html::text(check.what),
+            Html::text(&check.what),
             Html::element("span", &[("class", "figure")], Html::text(&check.value)),
             Html::text(check.bound),
             Html::text(check.source),
@@ -169,15 +182,21 @@ pub fn render(run: &Run) -> Html {
 /// One sentence in colour and words.
 fn headline(checks: &[Check]) -> Html {
     let of = |outcome: Outcome| checks.iter().filter(move |check| check.outcome == outcome);
-    let known = checks.len() - of(Outcome::Unknown).count();
-    let beyond: Vec<&str> = of(Outcome::Beyond).map(|check| check.what).collect();
+    let known = of(Outcome::Within).count() + of(Outcome::Beyond).count();
+    let beyond: Vec<&str> = of(Outcome::Beyond)
+        .map(|check| check.what.as_str())
+        .collect();
+    let mut open = String::new();
+    for check in of(Outcome::Open) {
+        let _ = write!(open, " Judge the {}: {}.", check.what, check.value);
+    }
     let unknown = match of(Outcome::Unknown).count() {
         0 => String::new(),
         count => format!(" Not told: {count}."),
     };
     let (class, text) = if !beyond.is_empty() {
         let text = format!(
-            "✗ Look closer: {} of {known} figures beyond their bounds: {}.{unknown}",
+            "✗ Look closer: {} of {known} figures beyond their bounds: {}.{open}{unknown}",
             beyond.len(),
             beyond.join(", ")
         );
@@ -185,7 +204,7 @@ fn headline(checks: &[Check]) -> Html {
     } else if known > 1 {
         (
             "verdict within",
-            format!("✓ Sound: all {known} figures are within their bounds.{unknown}"),
+            format!("✓ Sound: all {known} figures are within their bounds.{open}{unknown}"),
         )
     } else {
         (
@@ -204,7 +223,7 @@ fn ended(run: &Run) -> Check {
         None => status.state.name().to_owned(),
     });
     Check {
-        what: "how the run ended",
+        what: "how the run ended".to_owned(),
         value,
         bound: "finished",
         source: "book, Output: status.json",
@@ -233,7 +252,7 @@ fn check(run: &Run, bound: &Bound) -> Check {
         }
     });
     Check {
-        what: bound.what,
+        what: bound.what.to_owned(),
         value,
         bound: bound.words,
         source: bound.source,
@@ -256,7 +275,7 @@ fn nearest(run: &Run) -> Check {
         format!("{} spacings {names}", short(closest))
     });
     Check {
-        what: "nearest foreign pair",
+        what: "nearest foreign pair".to_owned(),
         value: value.trim_end().to_owned(),
         bound: "≥ 0.28 spacings",
         source: OUTPUT,
@@ -264,11 +283,104 @@ fn nearest(run: &Run) -> Check {
     }
 }
 
+/// The bodies with the fewest particles across, for what their figures need.
+fn across(run: &Run) -> Check {
+    let bodies = run
+        .figure("particles_across")
+        .and_then(|bodies| bodies.as_object());
+    let mut found: Vec<(&str, [f64; 2])> = bodies
+        .into_iter()
+        .flatten()
+        .filter_map(|(name, of)| {
+            let number = |key: &str| of.get(key).and_then(serde_json::Value::as_f64);
+            Some((name.as_str(), [number("particles")?, number("least")?]))
+        })
+        .collect();
+    let ratio = |[particles, least]: [f64; 2]| particles / least;
+    found.sort_by(|(_, a), (_, b)| ratio(*a).total_cmp(&ratio(*b)));
+    // Rounding may add or remove a layer.
+    let is_thin = |&&(_, [particles, least]): &&(&str, [f64; 2])| particles < least - 0.01;
+    let thin = found.iter().filter(is_thin).count();
+    let named: Vec<String> = found
+        .iter()
+        .take(thin.clamp(1, NAMED))
+        .map(|(name, [particles, least])| format!("{name} {}, wants {least}", short(*particles)))
+        .collect();
+    let more = match thin.saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!("; {more} bodies more"),
+    };
+    let value = if named.is_empty() {
+        "–".to_owned()
+    } else {
+        named.join("; ") + &more
+    };
+    Check {
+        what: "particles across".to_owned(),
+        value,
+        bound: "6 across the thinnest part, 10 of what strikes in three dimensions",
+        source: SPACING,
+        outcome: Outcome::of((!found.is_empty()).then_some(thin == 0)),
+    }
+}
+
+/// The last verdicts on plates that are none yet.
+fn unfinished(run: &Run) -> Vec<Check> {
+    let found = || -> Result<Vec<Check>, String> {
+        let rows = Rows::read(&run.folder.measures())?;
+        let [time, measure, figure, value] =
+            ["time", "measure", "figure", "value"].map(|name| rows.column(name));
+        let [time, measure, figure, value] = [time?, measure?, figure?, value?];
+        let verdicts = rows
+            .like_last(time)
+            .filter(|&row| rows.text(row, figure) == "verdict");
+        let open =
+            verdicts.filter(|&row| ["not_loaded", "still_moving"].contains(&rows.text(row, value)));
+        Ok(open
+            .map(|row| Check {
+                what: format!("verdict on {}", rows.text(row, measure)),
+                value: rows.text(row, value).replace('_', " "),
+                bound: "one that lasts: let the run go on",
+                source: PLATES,
+                outcome: Outcome::Beyond,
+            })
+            .collect())
+    };
+    // A run without measures has no verdict to wait for.
+    found().unwrap_or_default()
+}
+
+/// The share of each body that has failed, if any has.
+fn failed(run: &Run) -> Option<Check> {
+    let rows = Rows::read(&run.folder.bodies()).ok()?;
+    let [time, body, mass, failed] =
+        ["time", "body", "mass", "failed_mass"].map(|name| rows.column(name).ok());
+    let [time, body, mass, failed] = [time?, body?, mass?, failed?];
+    let share = |row: usize| rows.number(row, failed) / rows.number(row, mass);
+    let mut shares: Vec<(f64, &str)> = rows
+        .like_last(time)
+        .map(|row| (share(row), rows.text(row, body)))
+        .filter(|(share, _)| *share > 0.0)
+        .collect();
+    shares.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let named = shares.iter().take(NAMED);
+    let words: Vec<String> = named
+        .map(|(share, name)| format!("{} % of {name}", short(100.0 * share)))
+        .collect();
+    (!words.is_empty()).then(|| Check {
+        what: "failed share".to_owned(),
+        value: words.join(", "),
+        bound: "what the case means to break",
+        source: FAILED,
+        outcome: Outcome::Open,
+    })
+}
+
 /// Mass at the end, with all that left or was taken out, against that at the start.
 fn mass(run: &Run) -> Check {
     let defect = mass_defect(run);
     Check {
-        what: "mass defect",
+        what: "mass defect".to_owned(),
         value: defect
             .as_ref()
             .map_or_else(|reason| format!("– ({reason})"), |defect| short(*defect)),
@@ -334,5 +446,57 @@ mod tests {
         assert_eq!(defect(), Ok(0.0));
         std::fs::write(folder.departed(), "time,body,mass\n0.6,a,0.25\n").unwrap();
         assert!(defect().is_err());
+    }
+
+    /// A run that has ended well and within its bounds, with coarse bodies, a plate on its way and failed matter.
+    #[test]
+    fn coarse_bodies_open_verdicts_and_failed_matter_are_in_the_headline() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(dir.path());
+        let write = |path: std::path::PathBuf, text: &str| std::fs::write(path, text).unwrap();
+        let headline = || {
+            let page = render(&Run::read(&folder)).into_markup();
+            let (_, rest) = page.split_once("<p class=\"verdict").unwrap();
+            rest.split_once("</p>").unwrap().0.to_owned()
+        };
+        let summary = |across: f64| {
+            let sphere = serde_json::json!({ "particles": across, "least": 10 });
+            let all = serde_json::json!({ "energy_error_max": 1e-4, "particles_across": { "sphere": sphere } });
+            write(folder.summary(), &all.to_string());
+        };
+        let bodies = |failed: f64| {
+            let text =
+                format!("time,body,mass,failed_mass\n0.0,wall,4.0,0.0\n1.0,wall,4.0,{failed}\n");
+            write(folder.bodies(), &text);
+        };
+        let measures = |word: &str| {
+            let text = format!(
+                "time,measure,figure,value\n0.0,wall,verdict,not_loaded\n1.0,wall,verdict,{word}\n"
+            );
+            write(folder.measures(), &text);
+        };
+        let status = r#"{ "state": "finished", "step": 9, "time": 1.0 }"#;
+        write(folder.status_file(), status);
+        summary(12.0);
+        bodies(0.0);
+        assert!(headline().contains("✓ Sound"), "{}", headline());
+        measures("held");
+        assert!(headline().contains("✓ Sound"), "{}", headline());
+        bodies(1.0);
+        let told = headline();
+        assert!(told.contains("✓ Sound"), "{told}");
+        assert!(
+            told.contains("Judge the failed share: 25 % of wall."),
+            "{told}"
+        );
+        measures("still_moving");
+        let told = headline();
+        assert!(
+            told.contains("✗ Look closer") && told.contains("verdict on wall"),
+            "{told}"
+        );
+        summary(6.0);
+        let told = headline();
+        assert!(told.contains("particles across, verdict on wall"), "{told}");
     }
 }

@@ -154,7 +154,7 @@ impl Scene {
             upper,
             size: f64::from(sizes.copied().fold(f32::MIN_POSITIVE, f32::max)),
             enlarge: (total as f64 / kept.max(1) as f64).powf(1.0 / f64::from(first.dimension)),
-            unit: Readable::new("m", width.into_iter().fold(0.0, f64::max)),
+            unit: Readable::axes(width.into_iter().fold(0.0, f64::max)),
             yaw: yaw(&first.symmetry, [lower, upper]),
             kept,
             total,
