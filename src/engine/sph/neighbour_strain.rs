@@ -13,8 +13,8 @@ use sums::neighbour_mean::NeighbourMean;
 use sums::neighbourhood::Sources;
 use sums::with_scale;
 
-/// Finds the mean plastic strain of the neighbours of owned particles, at the beginning of a step. `strains` is memory for
-/// that of all images.
+/// Finds the mean plastic strain of the neighbours of owned particles that have flowed, at the beginning of a step; zero of
+/// others. `strains` is memory for that of all images.
 pub(super) fn find(
     strains: &mut Vec<f64>,
     sums: &Sums,
@@ -78,9 +78,11 @@ impl<S: PairScale> Vectorised for Means<'_, S> {
             } else {
                 [0.0; numerics::lanes::LANES]
             };
-            for (&place, mean) in cluster.valid().iter().zip(mean) {
+            for (place, mean) in cluster.valid().iter().zip(mean) {
+                // Whether others of the cluster have flowed depends on ranks.
+                let mean = if flowed(place) { mean } else { 0.0 };
                 // SAFETY: the particle belongs to this cluster alone, and this thread has the cluster.
-                unsafe { *self.found.slot(self.images[place as usize].slot()) = mean };
+                unsafe { *self.found.slot(self.images[*place as usize].slot()) = mean };
             }
         }
     }

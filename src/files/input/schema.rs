@@ -47,7 +47,7 @@ pub type Point = Spanned<Vec<Spanned<Extent>>>;
 tables! {
     /// The whole document.
     CaseParams {
-        /// One line for reports and plots, without control characters. Keys in braces, as in `{velocity}`, are told with
+        /// One line for reports and plots, without control characters. Keys in braces, as in `{velocity}`, stand for
         /// their values.
         title: Option<Spanned<String>> = "untitled";
         /// 1, 2 or 3.

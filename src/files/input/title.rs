@@ -11,7 +11,7 @@ use model::units;
 /// The title of a case with the values of the keys that it names in braces, and the case's text with that title, if it
 /// names any.
 ///
-/// A key is written as for `--set`; one that a single body has may stand alone. Of a vector its length is told. Braces
+/// A key is written as for `--set`; one that a single body has may stand alone. A vector stands for its length. Braces
 /// around anything else stay as they are.
 pub fn filled(text: &str) -> Option<(String, String)> {
     let document: Table = text.parse().ok()?;

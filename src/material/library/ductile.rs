@@ -151,7 +151,6 @@ records! {
         sources!(
             BORVIK_FAILURE, SHEAR_460E, LIKE_4340, BORVIK,
             "failure.fracture_energy": BAND,
-            "failure.effect": BAND,
             "eos.mie_gruneisen.b": CONSTANT_GAMMA
         );
     "titanium-6al-4v-ductile", "titanium Ti-6Al-4V, Johnson-Cook strength and failure":

@@ -483,20 +483,23 @@ mod tests {
         measures("held");
         assert!(headline().contains("✓ Sound"), "{}", headline());
         bodies(1.0);
-        let told = headline();
-        assert!(told.contains("✓ Sound"), "{told}");
+        let found = headline();
+        assert!(found.contains("✓ Sound"), "{found}");
         assert!(
-            told.contains("Judge the failed share: 25 % of wall."),
-            "{told}"
+            found.contains("Judge the failed share: 25 % of wall."),
+            "{found}"
         );
         measures("still_moving");
-        let told = headline();
+        let found = headline();
         assert!(
-            told.contains("✗ Look closer") && told.contains("verdict on wall"),
-            "{told}"
+            found.contains("✗ Look closer") && found.contains("verdict on wall"),
+            "{found}"
         );
         summary(6.0);
-        let told = headline();
-        assert!(told.contains("particles across, verdict on wall"), "{told}");
+        let found = headline();
+        assert!(
+            found.contains("particles across, verdict on wall"),
+            "{found}"
+        );
     }
 }
