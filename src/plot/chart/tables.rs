@@ -119,7 +119,7 @@ impl Tables {
         for (k, (name, path)) in self.tables.iter().enumerate() {
             let failed = |reason: String| wrong(path, reason);
             let table = Table::read_of(opener, path, &self.gauges)?;
-            of_pairs |= series::has_pairs(&table);
+            of_pairs |= self.pair.is_none() && series::has_pairs(&table);
             let drawn: Vec<&str> = self.drawn().collect();
             let all = series(&table, &drawn, self.pair.as_ref()).map_err(failed)?;
             if k == 0 {
@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_of_measures_are_told_in_words() {
+    fn columns_of_measures_are_in_words() {
         assert_eq!(words("plate.hole_diameter"), "plate hole diameter");
     }
 
