@@ -115,20 +115,26 @@ impl ParticleStore {
         }
     }
 
+    /// The messages in which halo particles get fields.
+    #[must_use]
+    pub fn halo_phases(&self) -> HaloPhase {
+        if self.unused.contains(Owner::LOCALISED) {
+            HaloPhase::all() - HaloPhase::STRAIN
+        } else {
+            HaloPhase::all()
+        }
+    }
+
     /// What halo particles get with their motion.
     #[must_use]
     pub fn motion_phase(&self) -> HaloPhase {
-        if self.unused.contains(Owner::LOCALISED) {
-            HaloPhase::MOTION
-        } else {
-            HaloPhase::MOTION | HaloPhase::STRAIN
-        }
+        self.halo_phases() & (HaloPhase::MOTION | HaloPhase::STRAIN)
     }
 
     /// Sets the number of halo particles.
     pub fn resize_halo(&mut self, halo: usize) {
         self.halo = halo;
-        self.resize_fields(HaloPhase::all(), self.owned + halo);
+        self.resize_fields(self.halo_phases(), self.owned + halo);
     }
 
     fn resize_fields(&mut self, which: impl Select, length: usize) {
@@ -331,6 +337,18 @@ mod tests {
                 let zeros = particles.bytes_or_zeros(field);
                 assert_eq!(*zeros, vec![0; 2 * field.kind.bytes()]);
             }
+        }
+    }
+
+    /// Without a material that asks for strains about it nobody sends them, and halo particles have none.
+    #[test]
+    fn strains_of_halo_particles_are_held_where_they_are_sent() {
+        for (unused, held) in [(Owner::empty(), 7), (Owner::LOCALISED, 4)] {
+            let mut particles = sentinel(4);
+            particles.drop_fields(unused);
+            particles.resize_halo(3);
+            assert_eq!(particles.plastic_strain.len(), held);
+            assert_eq!(particles.damage.len(), held);
         }
     }
 

@@ -86,7 +86,8 @@ pub fn bytes_of_options(case: &Case) -> [usize; 2] {
     let unused = unused_fields(case, &contact) | Owner::CONTACT;
     let fields = || rows(FieldInfo::is_optional).filter(|field| field.is_held_without(unused));
     let owned: usize = fields().map(|field| field.kind.bytes()).sum();
-    let halo = fields().filter(|field| HaloPhase::all().takes(field));
+    let phases = store_of(case).halo_phases();
+    let halo = fields().filter(|field| phases.takes(field));
     let halo: usize = halo.map(|field| field.kind.bytes()).sum();
     let halo = halo + Sph::bytes_shown(case);
     let mut record = Sph::bytes_of_records(case) + Connectivity::bytes_of_image(case);

@@ -48,7 +48,7 @@ pub fn write(
         "/neighbours",
         particles,
         neighbours,
-        HaloPhase::all() - HaloPhase::SHOWN,
+        particles.halo_phases() - HaloPhase::SHOWN,
     )?;
     let block = Block::even(about.distances.len() as u64 - 1, 0, 1);
     let bytes = bytemuck::cast_slice(&about.distances[1..]);
