@@ -21,6 +21,8 @@ pub use point::*;
 pub use rest::{NEGLIGIBLE, Rest};
 pub use thermal::{Thermal, ThermalConstants};
 
+use numerics::dispatch::{Vectorised, instructions};
+
 /// Smallest square of the bulk sound speed, as a fraction of its reference value K/ρ₀: expanded
 /// and hot states where the equation of state gives less (or no real sound speed) keep a tenth
 /// of the reference speed.
@@ -42,6 +44,22 @@ pub struct Material {
     /// Temperature as a function of density and specific energy; without it, strength stays that
     /// of the reference temperature.
     pub thermal: Option<Thermal>,
+}
+
+/// One call of [`Material::update`]; without `ALL`, of laws that do not follow the state.
+struct Update<'a, const ALL: bool> {
+    material: &'a Material,
+    batch: &'a mut PointBatch,
+    dt: f64,
+}
+
+impl<const ALL: bool> Vectorised for Update<'_, ALL> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn run<V: numerics::lanes::Lanes>(self) -> Lanes {
+        self.material.compose::<ALL>(self.batch, self.dt)
+    }
 }
 
 /// Most corrections of the energy of torn matter, and the relative error of its temperature after
@@ -245,20 +263,16 @@ impl Material {
     /// With `dt = 0` elastic stress, plastic strain and damage stay as they are, to the last bit,
     /// and all that follows from the given state (pressure, sound speed, viscous stress) becomes that
     /// of it.
-    #[inline(always)]
+    ///
+    /// The laws are compiled once for each instruction set, apart from the sweeps that call them. Those that follow the
+    /// state slow down those that do not where both stand in one function.
     pub fn update(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
+        let material = self;
         if self.strength.follows_state() || self.failure.follows_state() {
-            self.update_from_state(batch, dt)
+            instructions().run(Update::<true> { material, batch, dt })
         } else {
-            self.compose::<false>(batch, dt)
+            instructions().run(Update::<false> { material, batch, dt })
         }
-    }
-
-    /// [`Self::update`] with laws that follow the state. A function of its own: inside the other,
-    /// these laws slow down those that have no need of them.
-    #[inline(never)]
-    fn update_from_state(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
-        self.compose::<true>(batch, dt)
     }
 
     /// All laws in their order; without `ALL`, only those that do not follow the state.

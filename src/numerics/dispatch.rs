@@ -84,7 +84,7 @@ impl Instructions {
             Self::Avx2 => return unsafe { run_avx2(work) },
             Self::Portable => {}
         }
-        work.run::<Fallback>()
+        run_portable(work)
     }
 }
 
@@ -94,6 +94,12 @@ pub trait Vectorised {
     type Output;
     /// The work on vectors `V`; mark the implementation `#[inline(always)]`.
     fn run<V: Lanes>(self) -> Self::Output;
+}
+
+/// A function of its own: each of its fused multiply-adds may be a call.
+#[inline(never)]
+fn run_portable<W: Vectorised>(work: W) -> W::Output {
+    work.run::<Fallback>()
 }
 
 #[cfg(target_arch = "x86_64")]
