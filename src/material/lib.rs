@@ -269,9 +269,17 @@ impl Material {
     pub fn update(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let material = self;
         if self.strength.follows_state() || self.failure.follows_state() {
-            instructions().run(Update::<true> { material, batch, dt })
+            instructions().run(Update::<true> {
+                material,
+                batch,
+                dt,
+            })
         } else {
-            instructions().run(Update::<false> { material, batch, dt })
+            instructions().run(Update::<false> {
+                material,
+                batch,
+                dt,
+            })
         }
     }
 

@@ -27,6 +27,7 @@ fn configurations(report: &Value) -> Vec<(&str, u64, u64)> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn small_cases_are_measured_on_threads_and_ranks() {
     let folder = tempfile::tempdir().unwrap();
     let (said, report) = bench(
@@ -118,6 +119,7 @@ fn a_launch_of_its_own_measures_itself() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn messages_are_measured_between_ranks() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("messages.json");

@@ -111,6 +111,7 @@ fn every_client_opens_the_form_that_we_document() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn every_client_opens_partitions_and_two_processes_share_them() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -172,6 +173,7 @@ fn every_client_opens_the_snapshots_of_a_run_on_two_ranks() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_recipes_of_the_book_draw_something() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().expect("a temporary folder");

@@ -139,6 +139,7 @@ fn surfaces_are_closed_and_stand_where_pictures_draw_them() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn the_script_for_paraview_finds_and_mirrors_the_run() {
     let (place, run) = impact();
     let ended = export(&run, &["--to", "paraview"]).with_code(0);

@@ -102,6 +102,7 @@ fn a_killed_rank_ends_all() {
 
 /// In a step and while a checkpoint is written; the restart ends in the same bits.
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_rank_killed_anywhere_costs_what_came_after_the_last_checkpoint() {
     kills_cost_little(&["kill:1:60", "kill-in-checkpoint:0:40"]);
@@ -133,6 +134,7 @@ fn kills_cost_little(faults: &[&str]) {
 
 /// A limit on the size of files in one rank is a disk that is full for that rank alone.
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_disk_full_for_one_rank_ends_all_with_one_message() {
     let place = tempfile::tempdir().unwrap();

@@ -198,6 +198,7 @@ fn a_run_whose_folder_is_removed_or_moved_makes_nothing_anew() {
 }
 
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_second_run_in_a_folder_whose_lock_was_removed_stops_the_first() {
     let place = tempfile::tempdir().unwrap();

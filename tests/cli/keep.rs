@@ -28,6 +28,7 @@ fn column(table: &str, name: &str) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_leaves_is_booked_with_the_same_bits_on_any_ranks_and_through_a_restart() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);

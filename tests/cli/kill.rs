@@ -271,6 +271,7 @@ fn kill_points(time: Option<Duration>) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_kill_at_some_calls_of_the_system_loses_nothing() {
     kill_points(Some(SHORT));
 }

@@ -46,6 +46,7 @@ fn snapshots_tell_what_the_run_told() {
 /// Schedules of their own write parts of the model, with the same bits on any ranks and through a
 /// restart; what needs all particles says so.
 #[test]
+#[ignore = "slow"]
 fn schedules_of_snapshots_have_the_same_bits_and_are_told_from_whole_ones() {
     let place = tempfile::tempdir().unwrap();
     let [one, three, gone_on] = ["one", "three", "on"].map(|name| place.path().join(name));

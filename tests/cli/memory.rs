@@ -76,6 +76,7 @@ fn foretold(case: &str, options: &[&str]) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_options_take_is_foretold() {
     let place = tempfile::tempdir().unwrap();
     let case = place.path().join("case.toml");

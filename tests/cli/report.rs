@@ -301,6 +301,7 @@ fn what_is_no_run_is_refused() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_browser_shows_the_page_and_turns_the_model() {
     let Some(python) = python() else { return };
     let title = format!("title={}", serde_json::json!(HOSTILE));

@@ -68,6 +68,7 @@ fn damaged_checkpoints_are_passed_over_with_the_reason() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn another_schedule_and_checkpoints_by_steps_and_by_the_clock_change_no_bit() {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
@@ -125,24 +126,24 @@ fn another_part_in_the_place_of_a_file_is_refused() {
     end(again.arg("restart").arg(&run)).with_code(0);
 }
 
-/// Contact across slab faces and two symmetry planes, from every number of ranks to two others.
+/// Contact across slab faces and two symmetry planes, from one and four ranks to two others each.
 #[test]
 fn from_any_ranks_to_others() {
-    restart_on(|n| vec![n % 5 + 1, (n + 2) % 5 + 1]);
+    restart_on(&[1, 4], |n| vec![n % 5 + 1, (n + 2) % 5 + 1]);
 }
 
-/// The same to every number of ranks.
+/// The same from every number of ranks to every number.
 #[test]
 #[ignore = "slow: half a minute of launches"]
 fn from_any_ranks_to_any_ranks_validation() {
-    restart_on(|_| (1..=5).collect());
+    restart_on(&[1, 2, 3, 4, 5], |_| (1..=5).collect());
 }
 
-fn restart_on(others: impl Fn(usize) -> Vec<usize>) {
+fn restart_on(from: &[usize], others: impl Fn(usize) -> Vec<usize>) {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
     end(&mut coarse_run(1, &reference)).with_code(0);
-    for n in 1..=5 {
+    for &n in from {
         let stopped = place.path().join(format!("{n}"));
         end(coarse_run(n, &stopped).args(["--until", "0.06us"])).with_code(0);
         for m in others(n) {
@@ -175,6 +176,7 @@ fn snapshots(run: &Path) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_stop_in_the_step_before_a_snapshot_or_in_its_own_loses_none() {
     let place = tempfile::tempdir().unwrap();
     let reference = place.path().join("reference");
@@ -270,7 +272,7 @@ axis = "y"
 
 #[test]
 fn all_that_is_hard_from_some_ranks_to_others() {
-    hard(&[(1, &[5]), (3, &[4]), (5, &[2, 3])]);
+    hard(&[(3, &[4])]);
 }
 
 #[test]

@@ -320,6 +320,7 @@ fn a_terminal_gets_a_bar_and_a_pipe_gets_lines() {
 /// A short run has a row of each step; by time or by steps, and through a restart between rows, they are those
 /// that the case asks for.
 #[test]
+#[ignore = "slow"]
 fn rows_are_dense_enough_for_a_curve_or_as_the_case_says() {
     let place = tempfile::tempdir().unwrap();
     let run = |name: &str, number: usize, more: &[&str]| {

@@ -92,6 +92,7 @@ fn signals_stop_softly() {
 
 /// A closed terminal and a limit of processor time ask as SIGTERM does; under `nohup` a closed terminal asks nothing.
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_closed_terminal_and_the_processor_time_stop_softly() {
     let place = folder();
@@ -139,6 +140,7 @@ fn ctrl_c_stops_a_lone_rank_softly_and_a_second_one_at_once() {
 }
 
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn a_file_and_the_clock_stop_softly() {
     let place = folder();
@@ -166,6 +168,7 @@ fn a_file_and_the_clock_stop_softly() {
 }
 
 #[test]
+#[ignore = "slow"]
 #[cfg_attr(not(debug_assertions), ignore = "needs debug assertions")]
 fn the_launch_script_turns_signals_into_soft_stops() {
     let place = folder();

@@ -60,6 +60,7 @@ fn a_particle_out_of_range_stops_a_run_with_a_post_mortem() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn removed_particles_are_booked_with_the_same_bits_on_any_ranks_and_through_a_restart() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);
@@ -201,6 +202,7 @@ fn assert_same_pictures(removed: &Path, frozen: &Path, place: &Path) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn frozen_particles_stay_in_files_and_all_else_is_as_without_them() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);

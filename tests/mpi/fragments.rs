@@ -13,7 +13,7 @@ use crate::program::WHIPPLE;
 const CASE: &[&str] = &[
     "inputs/quarter-impact",
     "--set",
-    "spacing=0.05mm",
+    "spacing=0.06mm",
     "--set",
     "fragments={ every = \"0.05 us\", min_particles = 1 }",
     "--set",
@@ -78,6 +78,7 @@ fn column(table: &str, name: &str) -> Vec<f64> {
 }
 
 #[test]
+#[ignore = "slow"]
 fn tables_are_the_same_on_any_ranks_through_a_restart_and_from_snapshots() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);

@@ -107,6 +107,7 @@ fn follow(comm: &Comm, case: &Case, name: &str) {
 const RANKS: [usize; 6] = [2, 3, 5, 8, 12, 16];
 
 #[test]
+#[ignore = "slow"]
 fn a_plan_is_what_counters_tell_of_an_impact() {
     let test = "plan::a_plan_is_what_counters_tell_of_an_impact";
     on_each(test, &RANKS, |comm| follow(comm, &everything(), "impact"));
@@ -119,6 +120,7 @@ fn a_plan_is_what_counters_tell_of_friction() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_plan_is_what_counters_tell_of_stress_points() {
     let test = "plan::a_plan_is_what_counters_tell_of_stress_points";
     let case = stress_points();

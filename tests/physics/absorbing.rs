@@ -85,6 +85,7 @@ fn a_pulse_on_a_bar() {
 
 /// A transverse wave at a right angle, as long as .8 of the zone's depth.
 #[test]
+#[ignore = "slow"]
 fn packets_in_a_plane() {
     comes_back_by(Wave::S, 0.0, NORMAL);
 }

@@ -59,6 +59,7 @@ fn slides(ground: Ground, defect: f64, laws: &[(&'static str, f64)]) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_block_starts_to_slide_at_the_angle_of_friction() {
     starts_to_slide(Ground::Body, ANGLES);
 }
@@ -74,16 +75,19 @@ fn on_a_plane_it_starts_at_the_angle_of_friction() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn on_a_plane_it_slides_with_the_exact_acceleration() {
     slides(Ground::Plane, 0.002, LAWS);
 }
 
 #[test]
+#[ignore = "slow"]
 fn by_penalty_it_starts_at_the_angle_of_friction() {
     starts_to_slide(Ground::Held, &ANGLES[1..]);
 }
 
 #[test]
+#[ignore = "slow"]
 fn by_penalty_it_slides_with_the_exact_acceleration() {
     // Normals turn with the particles: no energy function.
     slides(Ground::Held, 0.01, &LAWS[..1]);

@@ -51,6 +51,7 @@ fn angle(s: &Simulation, right: &[u64]) -> f64 {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_bar_that_is_hit_turns_on() {
     for (dimension, lattice, half) in [
         (2, "cubic", false),

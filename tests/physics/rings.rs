@@ -40,6 +40,7 @@ fn collide(overrides: &[&str]) -> (Simulation, [usize; 2]) {
 /// stress they break in the conventional form, at a tension that the material bears. In the corrected
 /// form they do not.
 #[test]
+#[ignore = "slow"]
 fn rings_rebound_whole() {
     rebound(&[("conventional", 0.0), ("corrected", 0.0)]);
 }

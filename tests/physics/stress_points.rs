@@ -80,6 +80,7 @@ fn left(form: &str, dimension: usize, alpha: f64) -> [f64; 2] {
 /// Without viscosity collocated sums keep the mode as it is; the ends of the block smear it in one
 /// dimension. At stress points it is a wave, which viscosity damps.
 #[test]
+#[ignore = "slow"]
 fn alternating_velocities_are_a_wave() {
     for dimension in 1..=3 {
         for alpha in [0.0, 0.2, 1.0] {
@@ -162,6 +163,7 @@ fn the_bars_meet_and_part() {
 /// The blocks beyond the first layers, whose stress differs: means of stress and pressure over
 /// those of a one-dimensional reference, and the scatter of pressure.
 #[test]
+#[ignore = "slow"]
 fn the_blocks_have_their_stress() {
     for (form, spacing) in [
         ("conventional", "0.02"),
@@ -229,6 +231,7 @@ fn spacings(s: &Simulation, reach: f64) -> (f64, usize) {
 /// A strip that flows evenly keeps its spacings to a stretch of 1.56; conventional SPH is in pieces
 /// at 1.17, normalised SPH has clumped at 1.28.
 #[test]
+#[ignore = "slow"]
 fn a_strip_in_tension_stays_whole() {
     for (form, steps) in [
         ("conventional", 3),
@@ -271,6 +274,7 @@ fn a_strip_in_tension_stays_whole() {
 
 /// Rubber rings rebound whole without artificial stress.
 #[test]
+#[ignore = "slow"]
 fn rings_rebound_whole() {
     let mut s = start(ready(
         "rubber-rings",
