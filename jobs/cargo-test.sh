@@ -5,9 +5,9 @@
 #
 #   jobs/cargo-test.sh                  the first tier
 #   jobs/cargo-test.sh --ignored        the second tier, the slow tests, alone
-#   jobs/cargo-test.sh --rotating       the first tier and a tenth of the second, which the hash of
-#                                       the commit chooses (WHIPPLE_TENTH=1…10 does so by hand);
-#                                       it leaves out what takes more than three minutes by itself
+#   jobs/cargo-test.sh --tenth          a tenth of the second tier but for the room `validation`, which takes
+#                                       hours; the hash of the commit chooses it (WHIPPLE_TENTH=1…10 does
+#                                       so by hand)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -15,7 +15,7 @@ tier=${1:-first}
 build=(--locked --workspace)
 log=target/test.log
 # Tests of the second tier that no tenth may have: each takes more than three minutes.
-too_long='a_kill_at_any_call|contact_lab'
+too_long='a_kill_at_any_call|contact_lab|from_any_ranks_to_any_ranks|of_many_makes|a_thousand'
 
 # The tenth of this commit.
 tenth() {
@@ -40,35 +40,34 @@ if cargo nextest --version >/dev/null 2>&1; then
         cargo nextest run "${build[@]}" --run-ignored only --final-status-level pass || code=$?
         exit "$code"
     fi
-    # The one crate whose documentation has an example; nextest runs none.
-    cargo test --locked -p whipple-numerics --doc
-    if [ "$tier" != --rotating ]; then
-        cargo nextest run "${build[@]}" || code=$?
+    if [ "$tier" = --tenth ]; then
+        # Of each line the last word is the name of the test with its module.
+        slow=$(cargo nextest list "${build[@]}" --run-ignored only -E 'not binary(validation)' \
+            --message-format oneline | awk '{ print $NF }')
+        chosen=$(share "$(tenth)" <<<"$slow" | sed 's/.*/test(=&)/' | paste -sd'|')
+        printf 'Of the second tier, tenth %s:\n' "$(tenth)"
+        cargo nextest run "${build[@]}" --run-ignored only -E "${chosen:-none()}" --no-tests pass \
+            --final-status-level pass || code=$?
         exit "$code"
     fi
-    # Of each line the last word is the name of the test with its module.
-    slow=$(cargo nextest list "${build[@]}" --run-ignored only --message-format oneline | awk '{ print $NF }')
-    chosen=$(share "$(tenth)" <<<"$slow")
-    others=$(grep -vxF "${chosen:-none}" <<<"$slow" | sed 's/.*/test(=&)/' | paste -sd'|')
-    cargo nextest run "${build[@]}" --run-ignored all -E "not (${others:-none()})" 2>&1 | tee "$log" || code=$?
-    printf '\nOf the second tier, tenth %s:\n' "$(tenth)"
-    for test in $chosen; do
-        grep -m 1 -E "^ *[A-Z].* $test$" "$log" || echo "        no $test has run"
-    done
+    # The one crate whose documentation has an example; nextest runs none.
+    cargo test --locked -p whipple-numerics --doc
+    cargo nextest run "${build[@]}" || code=$?
     exit "$code"
 fi
 
 # One slow test at a time: some tell times.
 rest=()
-if [ "$tier" = --ignored ]; then rest=(--ignored --test-threads=1); fi
+case $tier in
+    --ignored) rest=(--ignored --test-threads=1) ;;
+    --tenth)
+        for room in cli desk engine files fuzz mpi physics; do build+=(--test "$room"); done
+        slow=$(cargo test "${build[@]}" -- --ignored --list 2>/dev/null | sed -n 's/: test$//p')
+        mapfile -t chosen < <(share "$(tenth)" <<<"$slow")
+        rest=(--ignored --test-threads=1 --exact "${chosen[@]:-none}")
+        ;;
+esac
 cargo test "${build[@]}" --no-fail-fast -- "${rest[@]}" 2>&1 | tee "$log" || code=$?
-if [ "$tier" = --rotating ]; then
-    slow=$(cargo test "${build[@]}" --tests -- --ignored --list 2>/dev/null | sed -n 's/: test$//p')
-    mapfile -t chosen < <(share "$(tenth)" <<<"$slow")
-    printf '\nOf the second tier, tenth %s: %s\n' "$(tenth)" "${chosen[*]:-none}"
-    cargo test "${build[@]}" --no-fail-fast --tests -- --ignored --test-threads=1 --exact "${chosen[@]:-none}" 2>&1 |
-        tee -a "$log" || code=$?
-fi
 awk '/^test .* \.\.\. FAILED$/ { failures = failures "\n  FAILED " $2 }
      /^test result:/ { binaries++; passed += $4; failed += $6; ignored += $8 }
      END { printf "\nSummary: %d test binaries, %d passed, %d failed, %d skipped%s\n",
