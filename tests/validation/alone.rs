@@ -33,6 +33,7 @@ const INPUTS: &[&str] = &[
     "quarter-impact",
     "raindrop",
     "rubber-rings",
+    "sedov",
     "sliding-block",
     "sod",
     "taylor-bar",

@@ -244,11 +244,11 @@ optional_tables! {
         /// Quadratic viscosity.
         beta: Option<Spanned<f64>> = 2.0, NotNegative;
         /// Constant or variable.
-        smoothing_length: Option<SmoothingName> = SmoothingName::Constant;
+        smoothing_length: Option<SmoothingName> => "variable where a material is an ideal gas, else constant";
         /// Smallest h/h₀ of a variable smoothing length.
-        smoothing_length_min: Option<Spanned<f64>> = 0.6, UpToOne;
+        smoothing_length_min: Option<Spanned<f64>>, UpToOne => "1 where that is the default, else 0.6";
         /// Largest h/h₀ of a variable smoothing length.
-        smoothing_length_max: Option<Spanned<f64>> = 2.0, Within(1.0, 10.0);
+        smoothing_length_max: Option<Spanned<f64>>, Within(1.0, 10.0) => "10 where that is the default, else 2";
         /// Factor of the artificial stress.
         artificial_stress: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
         /// The Balsara switch.

@@ -42,7 +42,7 @@ use super::schema::{
     BodyParams, CaseParams, RunParams, SmoothingName, SphParams, SymmetryParams, TimeStepParams,
 };
 use super::source::Diagnostic;
-use material::Material;
+use material::{Eos, Material};
 use model::readable::Readable;
 use model::{
     Axis, Body, Case, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
@@ -60,7 +60,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
     let (names, mut materials) = materials::materials(&params.material, dimension)?;
-    let (sph, smoothing) = sph(&params.sph)?;
+    let (sph, smoothing) = sph(&params.sph, &materials)?;
     let mut bodies = bodies::Reader {
         dimension,
         case: params,
@@ -243,19 +243,26 @@ fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryP
     Ok(planes)
 }
 
-/// The options of the sums, and smoothing length over spacing.
-pub(super) fn sph(params: &SphParams) -> Result<(SphOptions, f64), Diagnostic> {
+/// The options of the sums, and smoothing length over spacing. A gas expands beyond the reach that its particles had.
+pub(super) fn sph(
+    params: &SphParams,
+    materials: &[Material],
+) -> Result<(SphOptions, f64), Diagnostic> {
+    let is_gas = |material: &Material| matches!(material.eos, Eos::IdealGas(_));
+    let expands = params.smoothing_length.is_none() && materials.iter().any(is_gas);
+    let [min, max] = if expands { [1.0, 10.0] } else { [0.6, 2.0] };
     let bounds = SmoothingLength::Variable {
-        min: params.smoothing_length_min()?,
-        max: params.smoothing_length_max()?,
+        min: params.smoothing_length_min()?.unwrap_or(min),
+        max: params.smoothing_length_max()?.unwrap_or(max),
     };
     let options = SphOptions {
         form: params.form(),
         alpha: params.alpha()?,
         beta: params.beta()?,
-        smoothing_length: match params.smoothing_length() {
-            SmoothingName::Constant => SmoothingLength::Constant,
-            SmoothingName::Variable => bounds,
+        smoothing_length: match params.smoothing_length {
+            Some(SmoothingName::Variable) => bounds,
+            None if expands => bounds,
+            _ => SmoothingLength::Constant,
         },
         artificial_stress: params.artificial_stress()?,
         balsara: params.balsara(),
