@@ -279,6 +279,12 @@ shape.box = { lower = [0, 0], upper = ["8 mm", "8 mm"] }
 ///
 /// The exact figures, radius 1.0040 (E t²/ρ)^¼ and share .20880, are those of the similarity solution at γ = 1.4
 /// (Sedov 1959), integrated to nine digits.
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "200 rings"
+)]
 fn sedov(hot: f64) -> [f64; 2] {
     let spacing = 0.05 / hot;
     let mut s = start(ready("sedov", &[&format!("spacing=\"{spacing} m\"")]));
