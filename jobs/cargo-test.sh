@@ -15,7 +15,7 @@ tier=${1:-first}
 build=(--locked --workspace)
 log=target/test.log
 # Tests of the second tier that no tenth may have: each takes more than three minutes.
-too_long='a_kill_at_any_call|contact_lab|from_any_ranks_to_any_ranks|of_many_makes|a_thousand'
+too_long='a_kill_at_any_call|contact_lab|validation|of_many_makes|a_thousand|to_their_ends|recipes_are|of_ones_own'
 
 # The tenth of this commit.
 tenth() {
