@@ -46,8 +46,8 @@ if cargo nextest --version >/dev/null 2>&1; then
             --message-format oneline | awk '{ print $NF }')
         chosen=$(share "$(tenth)" <<<"$slow" | sed 's/.*/test(=&)/' | paste -sd'|')
         printf 'Of the second tier, tenth %s:\n' "$(tenth)"
-        cargo nextest run "${build[@]}" --run-ignored only -E "${chosen:-none()}" --no-tests pass \
-            --final-status-level pass || code=$?
+        cargo nextest run "${build[@]}" --run-ignored only -E "${chosen:-none()}" --no-tests pass ||
+            code=$?
         exit "$code"
     fi
     # The one crate whose documentation has an example; nextest runs none.
