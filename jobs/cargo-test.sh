@@ -14,7 +14,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 tier=${1:-first}
 build=(--locked --workspace)
 log=target/test.log
-# Tests of the second tier that no tenth may have: each takes more than three minutes.
+# Tests of the second tier that no tenth may have: those that take minutes by themselves, and cases at their own spacings.
 too_long='a_kill_at_any_call|contact_lab|validation|of_many_makes|a_thousand|to_their_ends|recipes_are|of_ones_own'
 
 # The tenth of this commit.

@@ -334,7 +334,7 @@ fn sedovs_blast() {
     assert!((share - 1.0).abs() < 0.10, "kinetic share {share}");
 }
 
-/// The few particles that were hot within two spacings do four fifths of it.
+/// The few particles that were hot within two spacings do .72 of it.
 #[test]
 fn sedovs_blast_of_few_particles() {
     let [front, share] = sedov(2.0);
