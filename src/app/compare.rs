@@ -161,6 +161,15 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
     case(&read(&a.case())?, &read(&b.case())?, report);
     let names = |folder: &RunFolder| tables::names(folder.path());
     for name in in_both(&names(a)?, &names(b)?, report) {
+        let of_part = match [a, b].map(|run| run.note_of_part(&name)) {
+            [Some(note), None] => Some(format!("A: {note}")),
+            [None, Some(note)] => Some(format!("B: {note}")),
+            _ => None,
+        };
+        if let Some(note) = of_part {
+            report.record(&name, "", &[note]);
+            continue;
+        }
         let (a, b) = (a.path().join(&name), b.path().join(&name));
         tables::compare(&name, &read(&a)?, &read(&b)?, report);
     }

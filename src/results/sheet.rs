@@ -6,6 +6,8 @@ use csv::{Reader, ReaderBuilder, StringRecord, Trim, WriterBuilder};
 
 /// Beginning of the line with the units of the columns.
 const UNITS: &str = "# units:";
+/// Beginning of the line with the share of the whole that was computed.
+const SHARE: &str = "# computed_share:";
 /// Beginning of a comment.
 const COMMENT: u8 = b'#';
 
@@ -44,6 +46,18 @@ pub fn units_line<T: AsRef<[u8]>>(units: impl IntoIterator<Item = T>) -> Vec<u8>
     text
 }
 
+/// The line below that of a table of a whole model of which this share was computed.
+#[must_use]
+pub fn share_line(share: f64) -> Vec<u8> {
+    format!("{SHARE} {share}\n").into_bytes()
+}
+
+/// True for such a line.
+#[must_use]
+pub fn is_share_line(line: &str) -> bool {
+    line.starts_with(SHARE)
+}
+
 /// Reads records that all have as many values as the header.
 #[must_use]
 pub fn rows(content: &[u8]) -> Reader<&[u8]> {
@@ -54,12 +68,14 @@ pub fn rows(content: &[u8]) -> Reader<&[u8]> {
 }
 
 /// A table read from text.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
     /// Names of the columns.
     pub names: Vec<String>,
     /// SI units of the columns; empty for none or where the table does not say.
     pub units: Vec<String>,
+    /// Share of the model that was computed, of a table that reports the whole of one with symmetry planes.
+    pub computed_share: Option<f64>,
     /// The number of the line that each row begins in, and its cells, without the blanks around
     /// them; a row may be cut off.
     pub rows: Vec<(usize, Vec<String>)>,
@@ -73,11 +89,14 @@ impl Sheet {
     /// A message if it is not such a table.
     pub fn parse(text: &str) -> Result<Self, String> {
         let units = text.lines().find_map(|line| line.strip_prefix(UNITS));
+        let share = text.lines().find_map(|line| line.strip_prefix(SHARE));
+        let share = share.and_then(|share| share.trim().parse::<f64>().ok());
         let mut records = records(text)?.into_iter();
         let (_, names) = records.next().ok_or("it is empty")?;
         let units = units.map_or_else(|| Ok(Vec::new()), records_of_line)?;
         let mut sheet = Self {
             units,
+            computed_share: share.filter(|share| *share > 0.0 && *share <= 1.0),
             rows: records.collect(),
             names,
         };
@@ -104,6 +123,7 @@ impl Sheet {
         let mut wide = Self {
             names: vec![self.names[time].clone()],
             units: vec![self.units[time].clone()],
+            computed_share: self.computed_share,
             rows: Vec::new(),
         };
         let mut columns = HashMap::new();
@@ -137,6 +157,7 @@ impl Sheet {
     pub fn text(&self) -> Vec<u8> {
         let unit = |unit: &String| if unit.is_empty() { "-" } else { unit }.to_owned();
         let mut text = units_line(self.units.iter().map(unit));
+        text.extend(self.computed_share.into_iter().flat_map(share_line));
         text.extend(line(&self.names));
         for (_, cells) in &self.rows {
             text.extend(line(cells));

@@ -207,7 +207,7 @@ fn a_witness_plane_counts_what_passes() {
         }
     }
     seen.extend(measurements::join_crossings(&mut simulation, &comm));
-    let passed = measurements::passed(&simulation);
+    let passed = measurements::whole(&simulation).passed;
     let count = simulation.particles.owned() as u64;
     let totals = &simulation.state.totals;
     assert_eq!(passed.len(), 6);

@@ -52,7 +52,7 @@ fn run(place: &Path, name: &str, change: impl Fn(&mut ParticleStore)) -> PathBuf
     )
     .unwrap();
     let columns = [Column::new("step", ""), Column::new("energy", "J")];
-    let mut table = Table::create(&folder.history(), &columns).unwrap();
+    let mut table = Table::create(&folder.history(), &columns, 1).unwrap();
     for step in 0..4 {
         table.row(&[Value::Count(step), Value::Real(0.1)]).unwrap();
     }

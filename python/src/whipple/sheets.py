@@ -17,6 +17,7 @@ from .gate import Gate
 from .table import Table
 
 _UNITS = "# units:"
+_SHARE = "# computed_share:"
 
 # Columns of words, also where all words look like numbers, as names of bodies may.
 _WORDS = frozenset(
@@ -63,7 +64,21 @@ def from_csv(path: Path) -> Table:
     cells = list(zip(*rows)) if rows else [()] * len(names)
     columns = {name: _column(name, values) for name, values in zip(names, cells)}
     stated = {name: "" if unit == "-" else unit for name, unit in zip(names, own_units)}
-    return Table(path.name, columns, stated)
+    return Table(path.name, columns, stated, _share(path, lines))
+
+
+def _share(path: Path, lines: Sequence[str]) -> float | None:
+    """The share of the model that was computed, where a comment states it."""
+    stated = next((line for line in lines if line.startswith(_SHARE)), None)
+    if stated is None:
+        return None
+    try:
+        share = float(stated.removeprefix(_SHARE))
+    except ValueError as error:
+        raise damaged(path, "its computed_share is no number") from error
+    if not 0.0 < share <= 1.0:
+        raise damaged(path, "its computed_share is no share")
+    return share
 
 
 def _column(name: str, cells: Sequence[str]) -> NDArray[Any]:

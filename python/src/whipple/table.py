@@ -27,10 +27,15 @@ class Table:
     """
 
     def __init__(
-        self, title: str, columns: Mapping[str, NDArray[Any]], column_units: Mapping[str, str]
+        self,
+        title: str,
+        columns: Mapping[str, NDArray[Any]],
+        column_units: Mapping[str, str],
+        computed_share: float | None = None,
     ) -> None:
         """Of columns (n,) and the units of those that have one."""
         self._title = title
+        self._computed_share = computed_share
         self._columns = dict(columns)
         self._units = dict(column_units)
         for values in self._columns.values():
@@ -40,6 +45,15 @@ class Table:
     def columns(self) -> tuple[str, ...]:
         """Names of the columns, in order."""
         return tuple(self._columns)
+
+    @property
+    def computed_share(self) -> float | None:
+        """Share of the model that was computed, of a table that tells the whole of one with symmetry planes.
+
+        None where there are no planes. An earlier version states none in `history`, `contacts`, `loads`,
+        `removed` and `departed`, which are then of what was computed.
+        """
+        return self._computed_share
 
     def __len__(self) -> int:
         """Number of rows."""
@@ -63,7 +77,7 @@ class Table:
         if isinstance(key, (int, np.integer)):
             key = [key]
         chosen = {name: values[key] for name, values in self._columns.items()}
-        return Table(self._title, chosen, self._units)
+        return Table(self._title, chosen, self._units, self._computed_share)
 
     def __getattr__(self, name: str) -> NDArray[Any]:
         # Names with underscores in front are asked for by copy, pickle and notebooks.

@@ -205,8 +205,14 @@ const MOST: usize = 20;
 
 /// Offset of the first row of a table: after the units and the names.
 fn end_of_header(text: &[u8]) -> Option<usize> {
-    let ends = text.iter().enumerate().filter(|(_, byte)| **byte == b'\n');
-    ends.map(|(at, _)| at + 1).nth(1)
+    let mut end = 0;
+    for line in text.split_inclusive(|&byte| byte == b'\n') {
+        end += line.len();
+        if !line.starts_with(b"#") {
+            return line.ends_with(b"\n").then_some(end);
+        }
+    }
+    None
 }
 
 #[cfg(test)]

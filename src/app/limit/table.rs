@@ -62,6 +62,7 @@ pub(super) fn sheet(law: &Law, speeds: &[f64]) -> Sheet {
         cells
     };
     Sheet {
+        computed_share: None,
         names,
         units,
         rows: speeds.iter().map(row).enumerate().collect(),

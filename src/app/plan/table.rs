@@ -166,6 +166,7 @@ pub fn sheet(rows: &[Row], steps: Option<f64>) -> Sheet {
         cells
     };
     Sheet {
+        computed_share: None,
         names: columns.map(|(name, _)| name.to_owned()).to_vec(),
         units: columns.map(|(_, unit)| unit.to_owned()).to_vec(),
         rows: rows.iter().map(cells).enumerate().collect(),

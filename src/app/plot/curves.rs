@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use files::output::RunFolder;
+use files::run::say::warn;
 use model::readable::with_unit;
 use plot::{
     By, Columns, Direction, History, PlotError, Points, Tables, choose, cumulative, distributions,
@@ -96,6 +97,7 @@ pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> 
         .into_iter()
         .map(|(name, source)| (name, table(source, history.table())));
     let tables: Vec<_> = tables.collect();
+    tables.iter().for_each(|(_, path)| warn_of_part(path));
     let chart = history.chart(&tables, &title_of(&args.source))?;
     let stem = match history {
         History::Energies => "history".to_owned(),
@@ -257,11 +259,23 @@ fn tables_of(
 }
 
 fn draw(args: &PlotArgs, tables: &Tables, picture: &str) -> Result<(), PlotError> {
+    for (_, path) in &tables.tables {
+        warn_of_part(path);
+    }
     write_chart(
         &tables.chart(&FileOpener)?,
         args.width,
         &target(args, picture),
     )
+}
+
+/// Warns of a table of an earlier version that is of what was computed alone.
+fn warn_of_part(path: &Path) {
+    let folder = RunFolder::at(path.parent().unwrap_or(path));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    if let Some(note) = folder.note_of_part(&name) {
+        warn(&format!("warning: {note}"));
+    }
 }
 
 /// A table of a run, or a table itself.

@@ -193,6 +193,7 @@ mod tests {
 
     fn seen(energies: Energies) -> Seen {
         let outlook = Outlook {
+            computed_share: 1.0,
             wall_seconds: 65.0,
             seconds_left: Some(30.0),
             seconds_per_step: 0.012,

@@ -27,6 +27,7 @@ pub fn write(frame: &Frame, out: &mut NewFile) -> Result<(), ExportError> {
         printed.words = Some(&bodies);
     }
     let mut sheet = Sheet {
+        computed_share: None,
         names: Vec::new(),
         units: Vec::new(),
         rows: Vec::new(),

@@ -163,6 +163,11 @@ impl Rows {
         Ok(Self { file, sheet })
     }
 
+    /// True if the table states the share of the model that was computed, so that it is of the whole.
+    pub fn states_share(&self) -> bool {
+        self.sheet.computed_share.is_some()
+    }
+
     /// Number of rows, at least one.
     pub fn len(&self) -> usize {
         self.sheet.rows.len()

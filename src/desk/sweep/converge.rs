@@ -47,6 +47,7 @@ impl Converged {
         let wanted = answers.into_iter().filter(|name| is_wanted(name, wanted));
         let rows = wanted.filter_map(|name| row(name, &runs));
         Self(Sheet {
+            computed_share: None,
             units: vec![String::new(); names.len()],
             rows: rows.enumerate().collect(),
             names,

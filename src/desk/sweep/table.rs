@@ -126,6 +126,7 @@ pub fn points(keys: &[String], rows: &[(Point, Option<Ended>)], wanted: &[String
     };
     let rows = rows.iter().map(row).enumerate();
     Sheet {
+        computed_share: None,
         names,
         units,
         rows: rows.collect(),
@@ -168,6 +169,7 @@ pub fn limits(plan: &Plan, bisections: &[(Vec<Value>, Bisection)]) -> Option<She
     };
     let rows = bisections.iter().map(row).enumerate();
     Some(Sheet {
+        computed_share: None,
         names,
         units,
         rows: rows.collect(),

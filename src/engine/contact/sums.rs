@@ -12,8 +12,11 @@ use particles::MirrorForce;
 /// Extremes of a pair of bodies in an interval of steps.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PairExtremes {
-    /// Largest magnitude of the force between the two (N).
+    /// Largest magnitude of the force between the two that are computed (N).
     pub peak_force: f64,
+    /// The same without what images behind symmetry planes cancel (N).
+    #[serde(default)]
+    pub peak_along: f64,
     /// Largest excess.
     pub largest_excess: f64,
     /// The nearest two particles; absent when none was in reach.
@@ -26,6 +29,7 @@ impl PairExtremes {
     /// Takes those of another interval, or of other particles, in.
     pub(crate) fn join(&mut self, other: &Self) {
         self.peak_force = self.peak_force.max(other.peak_force);
+        self.peak_along = self.peak_along.max(other.peak_along);
         self.largest_excess = self.largest_excess.max(other.largest_excess);
         self.closest = match (self.closest, other.closest) {
             (Some(a), Some(b)) => Some(a.min(b)),
@@ -283,6 +287,7 @@ impl ContactSums {
         let in_order = (body, particle) <= (other, nearest);
         pair.extremes.join(&PairExtremes {
             peak_force: 0.0,
+            peak_along: 0.0,
             largest_excess: excess,
             closest: force.closest.is_finite().then_some(Closest {
                 distance: force.closest,

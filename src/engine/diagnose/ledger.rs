@@ -56,8 +56,9 @@ impl NearestPair {
 }
 
 impl PairState {
-    /// Takes the sums of a step of which dt (s) is left to book; none if there are none.
-    pub(super) fn book(&mut self, sums: Option<&PairSums>, dt: f64) {
+    /// Takes the sums of a step of which dt (s) is left to book; none if there are none. Forces `along`
+    /// an axis are those of no symmetry plane normal to it.
+    pub(super) fn book(&mut self, sums: Option<&PairSums>, along: [bool; 3], dt: f64) {
         let force = sums.map_or([0.0; 3], |s| std::array::from_fn(|a| s.force[a].value()));
         let heat_power = sums.map_or(0.0, |s| s.heat.value());
         self.force = force;
@@ -69,6 +70,8 @@ impl PairState {
         self.heat += 0.5 * dt * heat_power;
         self.touching = sums.map_or(0, |s| s.touching);
         self.extremes.peak_force = self.extremes.peak_force.max(norm(&force));
+        let along = std::array::from_fn(|a| if along[a] { force[a] } else { 0.0 });
+        self.extremes.peak_along = self.extremes.peak_along.max(norm(&along));
     }
 }
 

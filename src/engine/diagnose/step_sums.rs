@@ -55,6 +55,7 @@ pub(crate) struct Votes {
 pub(crate) struct Booked<'a> {
     pub contact: &'a mut Contact,
     pub loads: &'a mut Loads,
+    pub mirrors: &'a Mirrors,
     /// Particles whose gradient has no correction.
     pub uncorrected: i64,
 }
@@ -238,8 +239,9 @@ impl StepSums {
             booked.loads.angular_impulse[a] = ExactSum::default();
         }
         state.plane_crossings += std::mem::take(&mut self.crossings);
+        let along = std::array::from_fn(|a| booked.mirrors.plane(a).is_none());
         for (pair, &key) in state.pairs.iter_mut().zip(&self.pair_keys) {
-            pair.book(contact.pairs.get(key), dt);
+            pair.book(contact.pairs.get(key), along, dt);
         }
         state.interpenetrated = state.interpenetrated.max(contact.interpenetrated);
         state.uncorrected = self.uncorrected;

@@ -188,6 +188,15 @@ impl RunState {
         }
     }
 
+    /// Momentum that all particles have gained since the start, those taken out included (kg m/s).
+    #[must_use]
+    pub fn gained_momentum(&self) -> [f64; 3] {
+        std::array::from_fn(|a| {
+            let taken: f64 = self.taken_out().map(|r| r.momentum[a]).sum();
+            self.totals.momentum[a] + taken - self.initial.momentum[a]
+        })
+    }
+
     /// Takes sums over all particles, under gravity (m/s²), and their `Σ |(x − x̄) × m v|` (kg m²/s), with the errors that
     /// follow from them.
     pub(crate) fn book_totals(&mut self, totals: Totals, turning: f64, gravity: [f64; 3]) {
@@ -211,14 +220,13 @@ impl RunState {
             worst.energy_error = worst.energy_deviation / scale;
             worst.contact_defect = worst.contact_deviation / scale;
         }
+        let gained = self.gained_momentum();
         for a in 0..3 {
             let removed = |part: fn(&Removed) -> f64| self.taken_out().map(part).sum::<f64>();
             let mass_time = totals.mass * self.time + removed(|r| r.mass_time);
             let falling = mass_time * gravity[a];
             let outside = impulse[a] + falling;
-            let taken: f64 = self.taken_out().map(|r| r.momentum[a]).sum();
-            let gained = totals.momentum[a] + taken - self.initial.momentum[a];
-            let error = gained - self.plane_impulse[a] - outside;
+            let error = gained[a] - self.plane_impulse[a] - outside;
             let worst = &mut self.worst.momentum_deviation[a];
             *worst = worst.max(error.abs());
             for put in [impulse[a], falling] {

@@ -28,7 +28,13 @@ impl<'a> Whole<'a> {
         f64::from(self.copies()) * part
     }
 
-    /// A momentum: none normal to a plane.
+    /// A number of particles.
+    #[must_use]
+    pub fn count(&self, part: u64) -> u64 {
+        u64::from(self.copies()) * part
+    }
+
+    /// A momentum, an impulse or a force: none normal to a plane.
     #[must_use]
     pub fn momentum(&self, part: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|a| match self.mirrors.plane(a) {

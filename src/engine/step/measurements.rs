@@ -2,7 +2,7 @@
 
 use super::accounts::TotalsInputs;
 use super::simulation::Simulation;
-use crate::diagnose::Passed;
+use crate::diagnose::RunState;
 use crate::measure::{self, BodyFigures, Crossing, Findings, GaugeRow, Matter, Whole};
 use comm::Comm;
 use model::Cadence;
@@ -91,12 +91,14 @@ pub fn join_crossings(simulation: &mut Simulation, comm: &Comm) -> Vec<Crossing>
     simulation.accounts.measures.witnesses.join(ledgers, comm)
 }
 
-/// Sums of all crossings of witness planes so far, images behind symmetry planes with them: by plane,
-/// body and direction, along the normal first.
+/// The state with the sums and ledgers of the whole model, images behind symmetry planes with them.
 #[must_use]
-pub fn passed(simulation: &Simulation) -> Vec<Passed> {
-    let whole = Whole::new(simulation.halo().mirrors());
-    let all = simulation.state.passed.iter();
-    all.map(|part| measure::whole_passed(part, &whole))
-        .collect()
+pub fn whole(simulation: &Simulation) -> RunState {
+    measure::whole_state(&simulation.state, images(simulation))
+}
+
+/// What symmetry planes leave out of a simulation.
+#[must_use]
+pub fn images(simulation: &Simulation) -> Whole<'_> {
+    Whole::new(simulation.halo().mirrors())
 }

@@ -465,6 +465,7 @@ impl Simulation {
             uncorrected: sph.uncorrected(),
             contact,
             loads,
+            mirrors: halo.mirrors(),
         };
         let [work, load] = partition.count(comm, particles);
         let mut votes = Votes {

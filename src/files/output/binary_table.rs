@@ -192,6 +192,7 @@ impl BinaryTable {
             columns.push(cells);
         }
         let mut sheet = Sheet {
+            computed_share: None,
             names: self.columns.iter().map(|c| c.name.clone()).collect(),
             units: self.columns.iter().map(|c| c.unit.clone()).collect(),
             rows: Vec::new(),

@@ -68,6 +68,7 @@ pub struct Table {
     path: PathBuf,
     file: File,
     columns: usize,
+    is_of_whole: bool,
     rows: u64,
     /// Of all that is in the file.
     bytes: u64,
@@ -75,19 +76,21 @@ pub struct Table {
 }
 
 impl Table {
-    /// Starts a table, replacing any old one: a comment with the units, then the names.
+    /// Starts a table, replacing any old one: a comment with the units, one with the share that is computed of a
+    /// model of several `copies` of that, then the names.
     ///
     /// # Errors
     /// [`OutputError::Io`].
-    pub fn create(path: &Path, columns: &[Column]) -> Result<Self, OutputError> {
-        let header = header(columns);
+    pub fn create(path: &Path, columns: &[Column], copies: u32) -> Result<Self, OutputError> {
+        let header = header(columns, copies);
         write_atomically(path, &header)?;
-        Self::append(path, columns.len(), &header, 0)
+        Self::append(path, columns.len(), true, &header, 0)
     }
 
     /// Continues a table after a restart: keeps the rows whose value in `column` is at most
     /// `last` and drops later ones, and a half-written last line. A missing table is started. One
-    /// that lacks the last columns gets them as zero: their counts begin now.
+    /// that lacks the last columns gets them as zero: their counts begin now. One without the share that is computed goes on
+    /// without it.
     ///
     /// # Errors
     /// [`OutputError::Io`]; [`OutputError::Damaged`] if the table has other columns or a row that
@@ -95,19 +98,21 @@ impl Table {
     pub fn resume(
         path: &Path,
         columns: &[Column],
+        copies: u32,
         column: &str,
         last: f64,
     ) -> Result<Self, OutputError> {
         if !path.exists() {
-            return Self::create(path, columns);
+            return Self::create(path, columns, copies);
         }
         let content = fs::read(path).map_err(OutputError::io("read", path))?;
-        let all = header(columns);
         let known = |count: usize| {
-            let rows = content.strip_prefix(&header(&columns[..count])[..]);
-            rows.map(|rows| (rows, count))
+            [copies, 1].into_iter().find_map(|copies| {
+                let rows = content.strip_prefix(&header(&columns[..count], copies)[..]);
+                rows.map(|rows| (rows, count, copies))
+            })
         };
-        let Some((rows, count)) = (1..=columns.len()).rev().find_map(known) else {
+        let Some((rows, count, stated)) = (1..=columns.len()).rev().find_map(known) else {
             let what = "its columns are not those that this run writes; move it away";
             return Err(OutputError::damaged(path, what));
         };
@@ -121,22 +126,35 @@ impl Table {
                 format!("row {number} has not {count} values with a number in column {column}");
             OutputError::damaged(path, what)
         })?;
-        let content = [all, kept].concat();
+        let content = [header(columns, stated), kept].concat();
         write_atomically(path, &content)?;
-        Self::append(path, columns.len(), &content, rows)
+        Self::append(path, columns.len(), stated == copies, &content, rows)
     }
 
     /// Opens a table of this content.
-    fn append(path: &Path, columns: usize, content: &[u8], rows: u64) -> Result<Self, OutputError> {
+    fn append(
+        path: &Path,
+        columns: usize,
+        is_of_whole: bool,
+        content: &[u8],
+        rows: u64,
+    ) -> Result<Self, OutputError> {
         let file = File::options().append(true).open(path);
         Ok(Self {
             path: path.to_owned(),
             file: file.map_err(OutputError::io("open", path))?,
             columns,
+            is_of_whole,
             rows,
             bytes: content.len() as u64,
             digest: Sha256::new_with_prefix(content),
         })
+    }
+
+    /// True if rows are to be of the whole model, false of what is computed: the table began so.
+    #[must_use]
+    pub fn is_of_whole(&self) -> bool {
+        self.is_of_whole
     }
 
     /// What the table holds so far.
@@ -157,7 +175,7 @@ impl Table {
     /// If a row has not one value for each column.
     #[must_use]
     pub fn whole(columns: &[Column], rows: &[Vec<Value>]) -> Vec<u8> {
-        let mut content = header(columns);
+        let mut content = header(columns, 1);
         for row in rows {
             assert_eq!(row.len(), columns.len(), "a row of the wrong length");
             content.extend(sheet::line(cells(row)));
@@ -264,12 +282,15 @@ fn keep(
     Ok((kept, count))
 }
 
-fn header(columns: &[Column]) -> Vec<u8> {
+fn header(columns: &[Column], copies: u32) -> Vec<u8> {
     let unit = |c: &Column| match c.unit.as_str() {
         "" => "-".to_owned(),
         unit => unit.to_owned(),
     };
     let mut lines = sheet::units_line(columns.iter().map(unit));
+    if copies > 1 {
+        lines.extend(sheet::share_line(1.0 / f64::from(copies)));
+    }
     lines.extend(sheet::line(columns.iter().map(|c| &c.name)));
     lines
 }
@@ -298,7 +319,7 @@ mod tests {
     fn numbers_come_back_with_the_same_bits() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let mut table = Table::create(&path, &columns()).unwrap();
+        let mut table = Table::create(&path, &columns(), 1).unwrap();
         let times = [1.0 / 3.0, -0.0, 1e-300, f64::MAX, f64::INFINITY, 2.5e-9];
         for time in times {
             table.row(&row(1, time)).unwrap();
@@ -317,20 +338,20 @@ mod tests {
     fn a_restart_drops_later_rows_and_a_half_written_line() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let mut table = Table::create(&path, &columns()).unwrap();
+        let mut table = Table::create(&path, &columns(), 1).unwrap();
         for step in 0..6_u32 {
             table.row(&row(step.into(), f64::from(step) * 0.1)).unwrap();
         }
         drop(table);
         let whole = fs::read_to_string(&path).unwrap();
         fs::write(&path, format!("{whole}6,0.6,cou")).unwrap();
-        let mut table = Table::resume(&path, &columns(), "step", 3.0).unwrap();
+        let mut table = Table::resume(&path, &columns(), 1, "step", 3.0).unwrap();
         table.row(&row(4, 4.0 * 0.1)).unwrap();
         drop(table);
         let text = fs::read_to_string(&path).unwrap();
         assert!(whole.starts_with(&text), "{text}");
         assert_eq!(text.lines().count(), 2 + 5);
-        Table::resume(&path, &columns(), "time", 9.0).unwrap();
+        Table::resume(&path, &columns(), 1, "time", 9.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), text);
     }
 
@@ -338,20 +359,20 @@ mod tests {
     fn a_restart_may_count_more_than_before() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let mut table = Table::create(&path, &columns()[..2]).unwrap();
+        let mut table = Table::create(&path, &columns()[..2], 1).unwrap();
         for (step, time) in [(0, 0.0), (1, 0.5), (2, 1.0)] {
             table.row(&row(step, time)[..2]).unwrap();
         }
         let [step, time, _] = columns().try_into().unwrap();
         let more = [step, time, Column::new("mass", "kg")];
-        let mut table = Table::resume(&path, &more, "step", 1.0).unwrap();
+        let mut table = Table::resume(&path, &more, 1, "step", 1.0).unwrap();
         let values = [Value::Count(2), Value::Real(1.5), Value::Real(3.0)];
         table.row(&values).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         let whole = "# units: -,s,kg\nstep,time,mass\n0,0.0,0.0\n1,0.5,0.0\n2,1.5,3.0\n";
         assert_eq!(text, whole);
         // Fewer columns than there are would lose what is counted.
-        assert!(Table::resume(&path, &more[..2], "step", 9.0).is_err());
+        assert!(Table::resume(&path, &more[..2], 1, "step", 9.0).is_err());
     }
 
     #[test]
@@ -360,7 +381,7 @@ mod tests {
         let path = folder.path().join("contacts.csv");
         let names = ["bumper, front", "a \"b\"", "two\nlines", "plain"];
         let row = |step: u64, name| [Value::Count(step), Value::Real(0.5), Value::Word(name)];
-        let mut table = Table::create(&path, &columns()).unwrap();
+        let mut table = Table::create(&path, &columns(), 1).unwrap();
         for (step, name) in (0..).zip(names) {
             table.row(&row(step, name)).unwrap();
         }
@@ -377,26 +398,26 @@ mod tests {
         let last = whole.find("3,0.5,plain").unwrap();
         for cut in last..whole.len() {
             fs::write(&path, &whole[..cut]).unwrap();
-            let mut table = Table::resume(&path, &columns(), "step", 9.0).unwrap();
+            let mut table = Table::resume(&path, &columns(), 1, "step", 9.0).unwrap();
             table.row(&row(3, "plain")).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), whole, "cut at {cut}");
         }
-        Table::resume(&path, &columns(), "step", 2.0).unwrap();
+        Table::resume(&path, &columns(), 1, "step", 2.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole[..last]);
         // A quote that is never closed hides all that follows.
         fs::write(&path, format!("{}0,0.5,\"open\n", &whole[..last])).unwrap();
-        Table::resume(&path, &columns(), "step", 9.0).unwrap();
+        Table::resume(&path, &columns(), 1, "step", 9.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole[..last]);
         // A row too short in the middle.
         fs::write(&path, whole.replace("1,0.5,", "1,0.5\n")).unwrap();
-        let error = Table::resume(&path, &columns(), "step", 9.0).unwrap_err();
+        let error = Table::resume(&path, &columns(), 1, "step", 9.0).unwrap_err();
         assert!(
             error.to_string().contains("row 2 has not 3 values"),
             "{error}"
         );
         // Remains of a power cut after the last row that is kept.
         fs::write(&path, format!("{whole}\0\0\0\n4,0.5\n")).unwrap();
-        Table::resume(&path, &columns(), "step", 3.0).unwrap();
+        Table::resume(&path, &columns(), 1, "step", 3.0).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), whole);
     }
 
@@ -404,8 +425,37 @@ mod tests {
     fn other_columns_are_refused_and_a_missing_table_is_started() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("contacts.csv");
-        Table::resume(&path, &columns(), "time", 1.0).unwrap();
-        let error = Table::resume(&path, &columns()[..2], "time", 1.0).unwrap_err();
+        Table::resume(&path, &columns(), 1, "time", 1.0).unwrap();
+        let error = Table::resume(&path, &columns()[..2], 1, "time", 1.0).unwrap_err();
         assert!(error.to_string().contains("columns"), "{error}");
+    }
+
+    #[test]
+    fn a_table_goes_on_with_the_share_that_it_began_with() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let begin = |copies| {
+            let mut table = Table::create(&path, &columns(), copies).unwrap();
+            table.row(&row(0, 0.0)).unwrap();
+            fs::read_to_string(&path).unwrap()
+        };
+        let whole = begin(4);
+        assert!(whole.starts_with("# units: -,s,-\n# computed_share: 0.25\nstep,"));
+        let parsed = sheet::Sheet::parse(&whole).unwrap();
+        assert_eq!(parsed.computed_share, Some(0.25));
+        assert_eq!(parsed.text(), whole.as_bytes());
+        let table = Table::resume(&path, &columns(), 4, "step", 9.0).unwrap();
+        assert!(table.is_of_whole());
+        assert_eq!(fs::read_to_string(&path).unwrap(), whole);
+        // One of a program that did not state it.
+        let part = begin(1);
+        let table = Table::resume(&path, &columns(), 4, "step", 9.0).unwrap();
+        assert!(!table.is_of_whole());
+        assert_eq!(fs::read_to_string(&path).unwrap(), part);
+        assert!(
+            Table::resume(&path, &columns(), 1, "step", 9.0)
+                .unwrap()
+                .is_of_whole()
+        );
     }
 }

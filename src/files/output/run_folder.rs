@@ -1,6 +1,7 @@
 //! The folder of a run.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::SystemTime;
@@ -13,7 +14,8 @@ use super::files::names_in;
 use super::fragments::FragmentTable;
 use super::listing::LISTING;
 use super::lock::{LOCK, RunLock};
-use super::{OutputError, Status, files, on_root, write_atomically};
+use super::{OutputError, Status, files, on_root, read_small, sheet, write_atomically};
+use results::regular::open_regular;
 
 pub(super) const STATUS: &str = "status.json";
 const SNAPSHOTS: &str = "snapshots";
@@ -24,6 +26,17 @@ const GAUGES: &str = "gauges";
 const HDF5_ENDING: &str = ".h5";
 const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
+
+/// Tables of sums that state the share of the model that was computed where it has symmetry planes.
+const OF_WHOLE: [&str; 5] = [
+    "history.csv",
+    "contacts.csv",
+    "loads.csv",
+    "removed.csv",
+    "departed.csv",
+];
+/// Bytes of the beginning of a table with its comments.
+const BEGIN: u64 = 1 << 14;
 
 /// The folder of a run and the names of its files.
 #[derive(Debug, Clone)]
@@ -36,6 +49,29 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
+    /// What to say of a table of sums that an earlier version began for a model with symmetry planes: it is of the
+    /// part that was computed. By one process.
+    #[must_use]
+    pub fn note_of_part(&self, name: &str) -> Option<String> {
+        if !OF_WHOLE.contains(&name) {
+            return None;
+        }
+        let case = read_small(&self.case()).ok()?;
+        let case: toml::Table = toml::from_slice(&case).ok()?;
+        let planes = case.get("symmetry")?.as_array()?.len().min(3);
+        let mut begin = Vec::new();
+        let (file, _) = open_regular(&self.path.join(name)).ok()?;
+        file.take(BEGIN).read_to_end(&mut begin).ok()?;
+        let states = String::from_utf8_lossy(&begin)
+            .lines()
+            .take_while(|line| line.starts_with('#'))
+            .any(sheet::is_share_line);
+        let copies = 1 << planes;
+        (planes > 0 && !states).then(|| {
+            format!("{name} of an earlier version is of what was computed, 1/{copies} of the whole")
+        })
+    }
+
     /// Names the folder of a run, whether it exists or not.
     #[must_use]
     pub fn at(path: &Path) -> Self {

@@ -113,8 +113,15 @@ pub struct Outlook {
     pub largest_load: f64,
     /// Unit of energies.
     pub energy_unit: String,
-    /// Energies so far.
+    /// Energies so far, of the whole model.
     pub energies: Energies,
+    /// Share of it that is computed; of what a program told that did not know it all.
+    #[serde(default = "all")]
+    pub computed_share: f64,
+}
+
+fn all() -> f64 {
+    1.0
 }
 
 /// Energies (SI) at some times (s), the first and the last of the run so far among them.

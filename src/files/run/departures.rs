@@ -1,7 +1,7 @@
 //! Notices that bodies have begun to leave the box of interest, once for each.
 
 use super::say::{counted, seconds};
-use engine::step::Simulation;
+use engine::step::{Simulation, measurements};
 use model::readable::shown;
 
 /// Bodies that have been reported, in the order of the case.
@@ -18,6 +18,7 @@ impl Departures {
     /// Lines about bodies that have begun to leave since the last time.
     pub fn notices(&mut self, simulation: &Simulation) -> Vec<String> {
         let (case, state) = (&simulation.case, &simulation.state);
+        let whole = measurements::images(simulation);
         let mut lines = Vec::new();
         let bodies = case.bodies.iter().zip(&state.departed);
         for ((body, gone), reported) in bodies.zip(&mut self.0) {
@@ -28,9 +29,9 @@ impl Departures {
             lines.push(format!(
                 "`{}` begins to leave the box of interest: {} of {}, at {}",
                 body.name,
-                counted(gone.particles, "particle"),
+                counted(whole.count(gone.particles), "particle"),
                 shown(
-                    gone.mass,
+                    whole.sum(gone.mass),
                     crate::output::unit_of_model("kg", case.dimension)
                 ),
                 seconds(state.time)

@@ -319,7 +319,8 @@ impl<'a> Driver<'a> {
         };
         let wall = self.start.elapsed().as_secs_f64();
         if comm.is_root() {
-            self.watched.row(&self.simulation.state, &load);
+            self.watched
+                .row(&measurements::whole(&self.simulation), &load);
         }
         self.folder.on_root(comm, || match &mut self.tables {
             Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),

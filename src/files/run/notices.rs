@@ -2,7 +2,7 @@
 
 use super::announce::decomposition;
 use comm::Comm;
-use engine::step::Simulation;
+use engine::step::{Simulation, measurements};
 use model::SphForm;
 use model::readable::short;
 
@@ -66,7 +66,7 @@ impl Notices {
         Some(format!(
             "warning: {} kg in absorbing zones have yielded or failed at step {}: zones take up \
              elastic waves; let them begin farther away",
-            short(mass),
+            short(measurements::images(simulation).sum(mass)),
             state.step
         ))
     }

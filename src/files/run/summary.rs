@@ -9,7 +9,7 @@ use super::output_time::Seconds;
 use crate::output::{VERSION, commit, h5};
 use crate::preflight::{Across, across, approaches};
 use comm::{self, Comm};
-use engine::step::{Removed, Simulation, failed_mass};
+use engine::step::{Removed, RunState, Simulation, failed_mass, measurements};
 use model::{Case, SphForm};
 
 /// Times of a run.
@@ -28,16 +28,19 @@ pub struct Clock {
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_json::Value {
     let load = load(comm, simulation);
-    let (state, worst) = (&simulation.state, &simulation.state.worst);
+    let whole = measurements::images(simulation);
+    let state = &measurements::whole(simulation);
+    let worst = &state.worst;
     let phases = mean_seconds(comm, simulation.timers.report());
     let mut counts = [simulation.memory() as u64, simulation.frozen() as u64];
     comm.sum_u64(&mut counts);
-    let [memory, frozen] = counts;
+    let memory = counts[0];
+    let frozen = whole.count(counts[1]);
     let threads = rayon::current_num_threads();
     let rate = rate(load.updates, &phases, comm.size() * threads);
     let contact = simulation.contact();
     let failed = failed_by_body(comm, simulation);
-    let departed = departed_by_body(simulation);
+    let departed = departed_by_body(&simulation.case, state);
     let normalised = simulation.case.sph.form != SphForm::Conventional;
     // Steps since the start of the process, if no particle was removed.
     let steps = load.updates as f64 / (load.particles[0] as f64).max(1.0);
@@ -82,9 +85,10 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "uncorrected_gradients": normalised.then_some(worst.uncorrected),
         "failure_energy": failed.is_some().then_some(state.totals.failure_energy),
         "failed_mass": failed,
-        "absorbing_zones": absorbing_zones(simulation),
+        "absorbing_zones": absorbing_zones(&simulation.case, state),
         "contact_limited_steps": worst.contact_limited_steps,
     });
+    summary["computed_share"] = json!(1.0 / f64::from(whole.copies()));
     summary["particles_across"] = json!(particles_across(comm, &simulation.case));
     summary["left_total_form"] = json!(left_total_form(simulation));
     summary
@@ -140,9 +144,8 @@ fn rate(updates: u64, phases: &[(&str, f64)], cores: usize) -> f64 {
 }
 
 /// Energy absorbed (J) and mass yielded (kg) in absorbing zones, if there are any.
-fn absorbing_zones(simulation: &Simulation) -> Option<serde_json::Value> {
-    let state = &simulation.state;
-    let zones = &state.loads[simulation.case.absorber_ledgers()];
+fn absorbing_zones(case: &Case, state: &RunState) -> Option<serde_json::Value> {
+    let zones = &state.loads[case.absorber_ledgers()];
     let taken = -zones.iter().map(|zone| zone.work).sum::<f64>();
     let yielded = state.totals.yielded_mass;
     (!zones.is_empty()).then(|| json!({ "absorbed_energy": taken, "yielded_mass": yielded }))
@@ -157,9 +160,12 @@ fn nearest(simulation: &Simulation) -> Option<serde_json::Value> {
 }
 
 /// Sums over the particles that have left the box of interest, by body, if there is one.
-fn departed_by_body(simulation: &Simulation) -> Option<BTreeMap<&str, serde_json::Value>> {
-    let departed = &simulation.state.departed;
-    let names = simulation.case.bodies.iter().map(|body| body.name.as_str());
+fn departed_by_body<'a>(
+    case: &'a Case,
+    state: &RunState,
+) -> Option<BTreeMap<&'a str, serde_json::Value>> {
+    let departed = &state.departed;
+    let names = case.bodies.iter().map(|body| body.name.as_str());
     let row = |gone: &Removed| {
         let [first, last] = gone.times.map_or([None; 2], |times| times.map(Some));
         json!({
@@ -179,9 +185,12 @@ fn departed_by_body(simulation: &Simulation) -> Option<BTreeMap<&str, serde_json
 fn failed_by_body<'a>(comm: &Comm, simulation: &'a Simulation) -> Option<BTreeMap<&'a str, f64>> {
     let bodies = &simulation.case.bodies;
     simulation.case.may_fail().then(|| {
+        let whole = measurements::images(simulation);
         let masses = failed_mass(&simulation.particles, bodies.len(), comm);
         let names = bodies.iter().map(|body| body.name.as_str());
-        names.zip(masses).collect()
+        names
+            .zip(masses.into_iter().map(|mass| whole.sum(mass)))
+            .collect()
     })
 }
 

@@ -67,10 +67,21 @@ fn open(
     key: &str,
     last: Option<f64>,
 ) -> Result<Table, OutputError> {
+    open_stating(folder, path, columns, 1, (key, last))
+}
+
+/// The same of a table that states the share that is computed, of a model of several copies of that.
+fn open_stating(
+    folder: &RunFolder,
+    path: &Path,
+    columns: &[Column],
+    copies: u32,
+    (key, last): (&str, Option<f64>),
+) -> Result<Table, OutputError> {
     folder.list(path)?;
     match last {
-        Some(last) => Table::resume(path, columns, key, last),
-        None => Table::create(path, columns),
+        Some(last) => Table::resume(path, columns, copies, key, last),
+        None => Table::create(path, columns, copies),
     }
 }
 
@@ -130,17 +141,27 @@ impl Tables {
         let has_loads = case.load_names().next().is_some();
         let removes = case.numerical_limits.policy != NumericalFailurePolicy::Stop
             || resume.is_some_and(|state| !state.removed.is_empty());
+        let copies = measurements::images(simulation).copies();
+        let stating = |path: &Path, columns: &[Column]| {
+            open_stating(folder, path, columns, copies, ("time", time))
+        };
         Ok(Self {
-            history: open(folder, &folder.history(), &of_history, "step", step)?,
-            contacts: open(folder, &folder.contacts(), &columns(CONTACTS), "time", time)?,
+            history: open_stating(
+                folder,
+                &folder.history(),
+                &of_history,
+                copies,
+                ("step", step),
+            )?,
+            contacts: stating(&folder.contacts(), &columns(CONTACTS))?,
             loads: has_loads
-                .then(|| open(folder, &folder.loads(), &columns(LOADS), "time", time))
+                .then(|| stating(&folder.loads(), &columns(LOADS)))
                 .transpose()?,
             removed: removes
-                .then(|| open(folder, &folder.removed(), &columns(REMOVED), "time", time))
+                .then(|| stating(&folder.removed(), &columns(REMOVED)))
                 .transpose()?,
             departed: departs
-                .then(|| open(folder, &folder.departed(), &of_departed, "time", time))
+                .then(|| stating(&folder.departed(), &of_departed))
                 .transpose()?,
             fragments: (case.fragments.is_some())
                 .then(|| {
@@ -189,24 +210,29 @@ impl Tables {
         wall: f64,
     ) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
-        self.write_history(case, state)?;
+        let whole = measurements::whole(simulation);
+        let told = |table: &Table| match table.is_of_whole() {
+            true => &whole,
+            false => state,
+        };
+        self.write_history(case, told(&self.history))?;
         let pairs = simulation.contact().active_pairs();
-        for (bodies, pair) in pairs.iter().zip(&state.pairs) {
+        for (bodies, pair) in pairs.iter().zip(&told(&self.contacts).pairs) {
             let names = bodies.map(|b| case.bodies[b].name.as_str());
             self.contacts.row(&contact(state.time, names, pair))?;
         }
         if let Some(table) = &mut self.loads {
-            for (name, load) in case.load_names().zip(&state.loads) {
+            for (name, load) in case.load_names().zip(&told(table).loads) {
                 table.row(&load_row(state.time, name, load))?;
             }
         }
         if let Some(table) = &mut self.removed {
-            for (body, gone) in case.bodies.iter().zip(&state.removed) {
+            for (body, gone) in case.bodies.iter().zip(&told(table).removed) {
                 table.row(&removed(state.time, &body.name, gone))?;
             }
         }
         if let Some(table) = &mut self.departed {
-            for (body, gone) in case.bodies.iter().zip(&state.departed) {
+            for (body, gone) in case.bodies.iter().zip(&told(table).departed) {
                 let mut row = removed(state.time, &body.name, gone);
                 row.extend(departure(gone));
                 table.row(&row)?;
@@ -217,7 +243,7 @@ impl Tables {
                 table.row(&body_row(state.time, &body.name, figures))?;
             }
         }
-        self.write_passed(simulation)?;
+        self.write_passed(case, &whole)?;
         let groups = load.by_group();
         self.ranks
             .rows(groups.map(|group| rank_row(state.step, &group)))?;
@@ -249,15 +275,14 @@ impl Tables {
     }
 
     /// Writes sums over the particles that have passed witness planes.
-    fn write_passed(&mut self, simulation: &Simulation) -> Result<(), OutputError> {
-        let (case, state) = (&simulation.case, &simulation.state);
+    fn write_passed(&mut self, case: &Case, whole: &RunState) -> Result<(), OutputError> {
         if let Some([table, _]) = &mut self.witnesses {
-            let mut passed = measurements::passed(simulation).into_iter();
+            let mut passed = whole.passed.iter();
             for plane in &case.measure.witnesses {
                 for body in &case.bodies {
                     for (direction, passed) in DIRECTIONS.into_iter().zip(&mut passed) {
                         let names = [&plane.name, &body.name, direction];
-                        table.row(&witness_row(state.time, names, &passed))?;
+                        table.row(&witness_row(whole.time, names, passed))?;
                     }
                 }
             }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use super::load::Load;
 use crate::output::{Energies, Outlook, RunFolder, unit_of_model};
 use comm::Comm;
-use engine::step::{RunState, Simulation};
+use engine::step::{RunState, Simulation, measurements};
 use model::RunControl;
 
 /// Most energies that are kept.
@@ -20,6 +20,8 @@ const SHARE: u32 = 100;
 pub struct Watched {
     control: RunControl,
     dimension: usize,
+    /// Share of the model that is computed.
+    computed_share: f64,
     begun: Instant,
     first_step: u64,
     energies: Energies,
@@ -38,9 +40,16 @@ impl Watched {
     /// Of a run in its folder that begins, or continues with the energies of its past.
     pub fn begin(comm: &Comm, folder: &RunFolder, simulation: &Simulation, goes_on: bool) -> Self {
         let before = (goes_on && comm.is_root()).then(|| folder.status().ok()?.outlook);
-        let past = before.flatten().map(|outlook| outlook.energies);
+        let share = 1.0 / f64::from(measurements::images(simulation).copies());
+        // Energies of what is computed do not go on as those of the whole.
+        let past = (before.flatten())
+            .filter(|outlook| outlook.computed_share.to_bits() == share.to_bits());
+        let past = past.map(|outlook| outlook.energies);
         let case = &simulation.case;
-        Self::of(&case.run, case.dimension, &simulation.state, past)
+        Self {
+            computed_share: share,
+            ..Self::of(&case.run, case.dimension, &simulation.state, past)
+        }
     }
 
     /// Of a run that begins at a state.
@@ -56,6 +65,7 @@ impl Watched {
         Self {
             control: *control,
             dimension,
+            computed_share: 1.0,
             begun: Instant::now(),
             first_step: state.step,
             rows: energies.time.len(),
@@ -70,7 +80,7 @@ impl Watched {
         }
     }
 
-    /// Adds a row of the tables.
+    /// Adds a row of the tables, of the state of the whole model.
     pub fn row(&mut self, state: &RunState, load: &Load) {
         self.ranks = load.ranks();
         self.particles = load.particles[0];
@@ -132,6 +142,7 @@ impl Watched {
             largest_load: self.largest_load,
             energy_unit: unit_of_model("J", self.dimension).to_owned(),
             energies: self.energies.clone(),
+            computed_share: self.computed_share,
         }
     }
 }

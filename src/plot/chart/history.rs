@@ -18,7 +18,7 @@ pub enum History {
     Energies,
     /// Time steps, by what limits them.
     TimeStep,
-    /// Components of the momentum of all particles that are computed.
+    /// Components of the momentum of all particles.
     Momentum,
     /// The changes of the energy, and of that of contact, that nothing accounts for.
     Defect,

@@ -21,6 +21,7 @@ impl Chart {
         let y = if x == y { format!("{y}_y") } else { y };
         let name = named.then(|| CURVE.to_owned());
         let mut sheet = Sheet {
+            computed_share: None,
             names: name.into_iter().chain([x, y]).collect(),
             units: named.then(String::new).into_iter().collect(),
             rows: Vec::new(),

@@ -74,7 +74,10 @@ impl Table {
         Ok(Self::of(sheet))
     }
 
-    fn of(Sheet { names, units, rows }: Sheet) -> Self {
+    fn of(sheet: Sheet) -> Self {
+        let Sheet {
+            names, units, rows, ..
+        } = sheet;
         Self { names, units, rows }
     }
 

@@ -85,6 +85,7 @@ impl Pictures {
             .map(|(a, b)| (a.to_owned(), b.to_owned()));
         let (names, units) = columns.chain(field).unzip();
         Sheet {
+            computed_share: None,
             names,
             units,
             rows: Vec::new(),

@@ -35,6 +35,7 @@ fn facts(run: &Run, case: &toml::Table) -> Vec<(&'static str, String)> {
         ("form of SPH", inside("sph", "form")),
         ("contact", words("contact")),
         ("end time", inside("run", "end_time")),
+        ("sums over time", run.folder.note_of_part("history.csv")),
     ];
     let entries = facts.into_iter();
     entries

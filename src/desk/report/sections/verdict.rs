@@ -413,11 +413,16 @@ fn mass_defect(run: &Run) -> Result<f64, String> {
         if masses.is_empty() {
             return Err("what has gone is not told at the last time of bodies".to_owned());
         }
-        Ok(masses.into_iter().sum())
+        // Bodies are listed with all images, so are these unless the table states no share.
+        let images = if rows.states_share() {
+            1.0
+        } else {
+            run.copies()
+        };
+        Ok(images * masses.into_iter().sum::<f64>())
     };
     let gone = gone(run.folder.removed())? + gone(run.folder.departed())?;
-    // Bodies are listed with all images, particles that have left without.
-    let defect = (last + run.copies() * gone - first).abs() / first;
+    let defect = (last + gone - first).abs() / first;
     defect
         .is_finite()
         .then_some(defect)
