@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use crate::dimension::{Any, Dimension, Three};
 use crate::lanes::Lanes;
 
 /// Support over smoothing length: no pair farther apart than this many `h_ij` sees each other.
@@ -246,37 +245,36 @@ impl PairScale for ConstantScale {
     }
 }
 
-/// `h_ij = ½(h_i + h_j)` in `D` dimensions.
+/// `h_ij = ½(h_i + h_j)`.
 #[derive(Debug, Clone, Copy)]
-pub struct MeanScale<D> {
+pub struct MeanScale {
     normalisation: f64,
-    dimension: D,
+    dimension: usize,
 }
 
-impl MeanScale<Three> {
-    /// For a kernel of three dimensions.
+impl MeanScale {
+    /// For a kernel.
     #[must_use]
-    pub fn three(kernel: &Kernel) -> Self {
-        debug_assert_eq!(kernel.dimension(), 3);
+    pub fn new(kernel: &Kernel) -> Self {
         Self {
             normalisation: kernel.normalisation(),
-            dimension: Three,
+            dimension: kernel.dimension(),
         }
+    }
+
+    /// `σ_d base/h^(d−1)` from `1/h` (1/m) and its square.
+    #[inline(always)]
+    fn height<V: Lanes>(&self, base: V, inverse: V, square: V) -> V {
+        let power = match self.dimension {
+            1 => V::splat(1.0),
+            2 => inverse,
+            _ => square,
+        };
+        base.mul(power).mul(V::splat(self.normalisation))
     }
 }
 
-impl MeanScale<Any> {
-    /// For any kernel.
-    #[must_use]
-    pub fn any(kernel: &Kernel) -> Self {
-        Self {
-            normalisation: kernel.normalisation(),
-            dimension: Any::new(kernel.dimension()),
-        }
-    }
-}
-
-impl<D: Dimension> PairScale for MeanScale<D> {
+impl PairScale for MeanScale {
     const VARIABLE: bool = true;
 
     #[inline(always)]
@@ -287,11 +285,6 @@ impl<D: Dimension> PairScale for MeanScale<D> {
     #[inline(always)]
     fn kernel<V: Lanes>(&self, distance: V, inverse: V) -> PairKernel<V> {
         let square = inverse.mul(inverse);
-        let factor = match self.dimension.number() {
-            1 => square,
-            2 => square.mul(inverse),
-            _ => square.mul(square),
-        };
         let ramp = |end: f64| {
             distance
                 .neg_mul_add(inverse, V::splat(end))
@@ -302,7 +295,7 @@ impl<D: Dimension> PairScale for MeanScale<D> {
             .mul(V::splat(-0.75))
             .mul_add(outer, inner.mul(inner).mul(V::splat(3.0)));
         PairKernel {
-            slope: shape.mul(factor.mul(V::splat(self.normalisation))),
+            slope: shape.mul(self.height(square, inverse, square)),
             inside: outer,
             core: inner,
             inverse_h: inverse,
@@ -317,12 +310,7 @@ impl<D: Dimension> PairScale for MeanScale<D> {
     #[inline(always)]
     fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
         let inverse = pairs.inverse_h;
-        let factor = match self.dimension.number() {
-            1 => inverse,
-            2 => inverse.mul(inverse),
-            _ => inverse.mul(inverse).mul(inverse),
-        };
-        shape.mul(factor.mul(V::splat(self.normalisation)))
+        shape.mul(self.height(inverse, inverse, inverse.mul(inverse)))
     }
 }
 

@@ -3,7 +3,6 @@
 pub mod alone;
 pub mod collector;
 pub mod counter;
-pub mod dimension;
 pub mod dispatch;
 pub mod ellipsoid;
 pub mod exact_sum;

@@ -1,6 +1,5 @@
 //! The pair scale of a case.
 
-use numerics::dimension::{Any, Three};
 use numerics::kernel::{ConstantScale, Kernel, MeanScale};
 
 /// The pair scale of a case, chosen once.
@@ -8,20 +7,17 @@ use numerics::kernel::{ConstantScale, Kernel, MeanScale};
 pub enum Scale {
     /// One smoothing length for all.
     Constant(ConstantScale),
-    /// Mean lengths of pairs, in three dimensions.
-    Three(MeanScale<Three>),
-    /// Mean lengths of pairs, in fewer dimensions.
-    Any(MeanScale<Any>),
+    /// Mean lengths of pairs.
+    Mean(MeanScale),
 }
 
 impl Scale {
     /// Of a kernel and the smoothing length (m) of all pairs, if they share one.
     #[must_use]
     pub fn new(kernel: &Kernel, constant: Option<f64>) -> Self {
-        match (constant, kernel.dimension()) {
-            (Some(h), _) => Self::Constant(ConstantScale::new(kernel, h)),
-            (None, 3) => Self::Three(MeanScale::three(kernel)),
-            (None, _) => Self::Any(MeanScale::any(kernel)),
+        match constant {
+            Some(h) => Self::Constant(ConstantScale::new(kernel, h)),
+            None => Self::Mean(MeanScale::new(kernel)),
         }
     }
 }
@@ -32,8 +28,7 @@ macro_rules! with_scale {
     ($scale:expr, $name:ident => $work:expr) => {
         match $scale {
             $crate::scale::Scale::Constant($name) => $work,
-            $crate::scale::Scale::Three($name) => $work,
-            $crate::scale::Scale::Any($name) => $work,
+            $crate::scale::Scale::Mean($name) => $work,
         }
     };
 }

@@ -131,9 +131,9 @@ fn sweeps_agree_with_plain_sums() {
             check_sweeps(cloud, scale);
         }
     }
-    check_sweeps(cloud(1, 1.8, 1, 52), MeanScale::any(&Kernel::new(1)));
-    check_sweeps(cloud(2, 1.8, 1, 53), MeanScale::any(&Kernel::new(2)));
-    check_sweeps(cloud(3, 1.8, 1, 54), MeanScale::three(&Kernel::new(3)));
+    check_sweeps(cloud(1, 1.8, 1, 52), MeanScale::new(&Kernel::new(1)));
+    check_sweeps(cloud(2, 1.8, 1, 53), MeanScale::new(&Kernel::new(2)));
+    check_sweeps(cloud(3, 1.8, 1, 54), MeanScale::new(&Kernel::new(3)));
 }
 
 /// A symmetric matrix with the eigenvectors of M and random eigenvalues.

@@ -289,9 +289,9 @@ fn sweeps_agree_with_plain_sums() {
             check_sweeps(cloud, scale);
         }
     }
-    check_sweeps(cloud(1, 1.8, 1, 52), MeanScale::any(&Kernel::new(1)));
-    check_sweeps(cloud(2, 1.8, 1, 53), MeanScale::any(&Kernel::new(2)));
-    check_sweeps(cloud(3, 1.8, 1, 54), MeanScale::three(&Kernel::new(3)));
+    check_sweeps(cloud(1, 1.8, 1, 52), MeanScale::new(&Kernel::new(1)));
+    check_sweeps(cloud(2, 1.8, 1, 53), MeanScale::new(&Kernel::new(2)));
+    check_sweeps(cloud(3, 1.8, 1, 54), MeanScale::new(&Kernel::new(3)));
 }
 
 /// `Σ m a`, `Σ m (σ:L/ρ + v·a)` and, where every gradient is corrected, `Σ x × m a` are zero to

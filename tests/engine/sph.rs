@@ -258,11 +258,11 @@ fn sweeps_with_constant_h_agree_with_plain_sums() {
 #[test]
 fn sweeps_with_variable_h_agree_with_plain_sums() {
     for planes in [0, 1] {
-        check_sweeps(&cloud(1, 1.8, planes, 42), MeanScale::any(&Kernel::new(1)));
-        check_sweeps(&cloud(2, 1.8, planes, 43), MeanScale::any(&Kernel::new(2)));
+        check_sweeps(&cloud(1, 1.8, planes, 42), MeanScale::new(&Kernel::new(1)));
+        check_sweeps(&cloud(2, 1.8, planes, 43), MeanScale::new(&Kernel::new(2)));
         check_sweeps(
             &cloud(3, 1.8, planes, 44),
-            MeanScale::three(&Kernel::new(3)),
+            MeanScale::new(&Kernel::new(3)),
         );
     }
 }
@@ -278,7 +278,7 @@ fn momentum_and_energy_balance() {
         let records = force_records(&cloud, &found, 78);
         let (mut force, mut power, mut size, mut power_size) = ([0.0; 3], 0.0, 0.0, 0.0);
         for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
-            let scale = MeanScale::three(&Kernel::new(3));
+            let scale = MeanScale::new(&Kernel::new(3));
             let sums = momentum(available()[0], &records, cluster.receivers, list, scale);
             for k in 0..cluster.lanes {
                 let record = &records.motion[cluster.receivers[k] as usize];
@@ -385,7 +385,7 @@ fn lone_and_coincident_particles_are_harmless() {
         for set in available() {
             for neighbours in [&[0_u32][..], &[0, 1]] {
                 let kernel = Kernel::new(3);
-                let scale = MeanScale::three(&kernel);
+                let scale = MeanScale::new(&kernel);
                 let receivers = [0, 1, 1, 1, 1, 1, 1, 1];
                 let gradient = gradient(
                     set,
@@ -408,7 +408,7 @@ fn lone_and_coincident_particles_are_harmless() {
     }
     // A tenth of a billionth of a spacing apart, at closing speed 7 km/s.
     let force = pair([0.0; 3], [1e-15, 0.0, 0.0]);
-    let scale = MeanScale::three(&Kernel::new(3));
+    let scale = MeanScale::new(&Kernel::new(3));
     let gradient = gradient(
         available()[0],
         (&force.motion, &force.lengths),

@@ -234,17 +234,17 @@ fn options_agree_with_plain_sums() {
         check(
             ALL,
             &cloud(1, 1.8, planes, 42),
-            MeanScale::any(&Kernel::new(1)),
+            MeanScale::new(&Kernel::new(1)),
         );
         check(
             ALL,
             &cloud(2, 1.8, planes, 43),
-            MeanScale::any(&Kernel::new(2)),
+            MeanScale::new(&Kernel::new(2)),
         );
         check(
             ALL,
             &cloud(3, 1.8, planes, 44),
-            MeanScale::three(&Kernel::new(3)),
+            MeanScale::new(&Kernel::new(3)),
         );
     }
 }
@@ -284,7 +284,7 @@ fn a_number_of_dimensions_means_the_same_known_early_or_late() {
     let found = cloud.find();
     let records = Records::new(&cloud, &found, 80);
     let kernel = Kernel::new(3);
-    let (early, late) = (MeanScale::three(&kernel), MeanScale::any(&kernel));
+    let (early, late) = (MeanScale::new(&kernel), MeanScale::new(&kernel));
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
         for set in available() {
             let early = records.sums::<_, true>(ALL, set, cluster.receivers, list, early);
@@ -302,7 +302,7 @@ fn pairs_conserve_momentum_and_energy() {
     cloud.owned = cloud.id.len();
     let found = cloud.find();
     let records = Records::new(&cloud, &found, 78);
-    let scale = MeanScale::three(&Kernel::new(3));
+    let scale = MeanScale::new(&Kernel::new(3));
     // Force, drift, turn of the drift, power; and their sizes.
     let (mut sums, mut sizes) = ([0.0; 10], [0.0; 10]);
     for (cluster, list, _) in found.clusters.chunks().iter().flat_map(Chunk::iter) {
