@@ -203,6 +203,11 @@ numbers() {
     sed -e '/"seconds_by_phase": {/,/}/d' -e '/"decomposition": {/,/}/d' -e '/"decomposition": null/d' -e '/"output_seconds": {/,/}/d' -e '/^ *"\(bytes_per_particle\|bytes_sent_per_rank_and_step\|commit\|instructions\|messages_per_rank_and_step\|million_updates_per_second_per_core\|output_share\|ranks\|set_up_seconds\|threads\|version\|wall_seconds\)"/d' "$1"
 }
 
+# State of a run, without the run's id and what is of clocks.
+state() {
+    sed -e '/"outlook"/,$d' -e '/^ *"run":/d' "$1"
+}
+
 # What `info` says of the last snapshot, but for the program, ranks and threads that wrote it.
 last_snapshot() {
     local files=("$1"/snapshots/step-*.vtkhdf)
@@ -223,7 +228,7 @@ same() {
         if [[ ! ${table##*/} =~ ^(performance|ranks).csv$ ]]; then cmp "$table" "$b/${table##*/}" 2>&1 || true; fi
     done
     # What follows is of clocks, ranks and where the run began.
-    diff <(sed '/"outlook"/,$d' "$a/status.json") <(sed '/"outlook"/,$d' "$b/status.json") || true
+    diff <(state "$a/status.json") <(state "$b/status.json") || true
     if [ -e "$a/summary.json" ]; then diff <(numbers "$a/summary.json") <(numbers "$b/summary.json") || true; fi
     diff <(last_snapshot "$a") <(last_snapshot "$b") || true
 }

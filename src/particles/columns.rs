@@ -177,6 +177,8 @@ bitflags! {
         const GAS_CONTACT = 1 << 27;
         /// Materials that soften where deformation localises.
         const LOCALISED = 1 << 28;
+        /// The conventional form of the sums.
+        const CONVENTIONAL = 1 << 29;
         /// Records that a particle keeps because snapshots are to show them.
         const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
             | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();

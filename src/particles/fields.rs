@@ -201,7 +201,9 @@ particle_fields! {
     /// Pressure, compression positive.
     pressure: Scalar,                     "Pa",     Scratch,  STRESS,         Default,  -;
     /// Longitudinal sound speed.
-    sound_speed: Scalar,                  "m/s",    Scratch,  STRESS,         OnDemand, -;
+    sound_speed: Scalar,                  "m/s",    Scratch,  -,              OnDemand, -;
+    /// Speed of the linear artificial viscosity: that of sound, none where failed matter bears no pressure.
+    viscous_speed: Scalar,                "m/s",    Scratch,  STRESS,         Never,    CONVENTIONAL | NORMALISED;
     /// Volume fraction of foreign bodies in the contact support.
     foreign_fraction: Scalar,             "",       Scratch,  CONTACT,        Default,  CONTACT;
     /// Foreign fraction above the touching value.

@@ -260,10 +260,7 @@ fn sweeps_with_variable_h_agree_with_plain_sums() {
     for planes in [0, 1] {
         check_sweeps(&cloud(1, 1.8, planes, 42), MeanScale::new(&Kernel::new(1)));
         check_sweeps(&cloud(2, 1.8, planes, 43), MeanScale::new(&Kernel::new(2)));
-        check_sweeps(
-            &cloud(3, 1.8, planes, 44),
-            MeanScale::new(&Kernel::new(3)),
-        );
+        check_sweeps(&cloud(3, 1.8, planes, 44), MeanScale::new(&Kernel::new(3)));
     }
 }
 

@@ -31,6 +31,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::BALSARA, sph.balsara),
         (Owner::CONDUCTION, sph.conduction > 0.0),
         (Owner::XSPH, sph.xsph > 0.0),
+        (Owner::CONVENTIONAL, sph.form == SphForm::Conventional),
         (Owner::CORRECTED, sph.form == SphForm::Corrected),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
         (

@@ -3,7 +3,7 @@
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use super::stresses::{ShowStress, fill_stresses};
+use super::stresses::{ShowStress, fill_stresses, set_viscous_speeds};
 use crate::sph::shared::{Sums, scratch_of};
 use crate::sph::signal::{SignalSpeed, Signals};
 use numerics::dispatch::Vectorised;
@@ -33,6 +33,7 @@ impl Formulation for Conventional {
         let gradient = PlainGradient(ShowStress::new(&mut self.records));
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
+        set_viscous_speeds(particles);
     }
 
     fn forces(

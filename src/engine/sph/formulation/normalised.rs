@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::Formulation;
 use super::gradient_sweep::{Gradient, strain};
 use super::momentum_sweep::accelerate;
-use super::stresses::viscous_speed;
+use super::stresses::set_viscous_speeds;
 use crate::sph::shared::{Sums, scratch_of};
 use crate::sph::signal::{SignalSpeed, Signals};
 use numerics::dispatch::Vectorised;
@@ -45,6 +45,7 @@ impl Formulation for Normalised {
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
+        set_viscous_speeds(particles);
         let norms = particles.correction_norm.par_iter().with_min_len(GRAIN);
         let uncorrected = norms.filter(|&&norm| norm == 0.0).count();
         sums.uncorrected = i64::try_from(uncorrected).unwrap_or(i64::MAX);
@@ -136,7 +137,7 @@ fn record(particles: &ParticleStore, image: Image) -> NormalisedRecord {
         (particles.pressure[i], &particles.deviatoric_stress[i]),
         &particles.gradient_correction[i],
         &particles.gradient_shift[i],
-        [particles.density[i], viscous_speed(particles, i)],
+        [particles.density[i], particles.viscous_speed[i]],
     );
     NormalisedRecord {
         stress: Mirrors::reflect_tensor(&own.stress, mirror_mask),

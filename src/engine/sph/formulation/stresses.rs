@@ -1,5 +1,7 @@
 //! Records of the stress of particles and images.
 
+use rayon::prelude::*;
+
 use crate::sph::material_update::{Show, Updated};
 use crate::sph::shared::show_images;
 use numerics::lanes::Lanes;
@@ -45,10 +47,21 @@ impl Show for &ShowStress<'_> {
     }
 }
 
-/// Speed (m/s) of the artificial viscosity of a particle.
-pub(super) fn viscous_speed(particles: &ParticleStore, i: usize) -> f64 {
-    let damage = particles.damage.get(i).copied().unwrap_or(0.0);
-    material::viscous_speed(particles.sound_speed[i], particles.pressure[i], damage)
+/// Sets the speeds of the artificial viscosity of owned particles.
+pub(super) fn set_viscous_speeds(particles: &mut ParticleStore) {
+    let ParticleStore {
+        viscous_speed,
+        sound_speed,
+        pressure,
+        damage,
+        ..
+    } = particles;
+    let speeds = viscous_speed.par_iter_mut().zip(sound_speed.par_iter());
+    let speeds = speeds.zip(pressure.par_iter()).enumerate();
+    speeds.for_each(|(i, ((speed, &sound), &pressure))| {
+        let damage = damage.get(i).copied().unwrap_or(0.0);
+        *speed = material::viscous_speed(sound, pressure, damage);
+    });
 }
 
 /// Stresses of halo particles and their images, or of the images of this rank's particles.
@@ -68,7 +81,7 @@ pub(super) fn fill_stresses(
                 particles.pressure[slot],
                 &Mirrors::reflect_symmetric(&particles.deviatoric_stress[slot], mirror_mask),
                 particles.density[slot],
-                viscous_speed(particles, slot),
+                particles.viscous_speed[slot],
             )
         },
     );
