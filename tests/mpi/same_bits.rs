@@ -157,7 +157,7 @@ fn every_contact_mode_variable_h_and_options() {
         ],
         ["sph.conduction=1", "run.end_time=0.05us"],
         ["sph.xsph=0.5", "run.end_time=0.1us"],
-        // To the end, when failed particles are about intact ones.
+        // Until failed particles are about intact ones.
         ["sph.form=conventional", "run.end_time=0.2us"],
         ["sph.form=normalised", "run.end_time=0.2us"],
         ["sph.form=stress_points", "run.end_time=0.2us"],
