@@ -5,6 +5,7 @@ use super::laid::{Block, Cells};
 use crate::Wanted;
 use crate::parts::{Parts, best};
 use crate::row::Cut;
+use model::{Lattice, Vec3};
 
 /// Blocks of a level of what is filled by cells, within some cuts.
 struct Blocks<'a> {
@@ -78,25 +79,37 @@ pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
         limit: f64::INFINITY,
         any: false,
     };
-    // No site is fitted farther out than its layer: the search ends there.
-    let (mut least, mut most) = cells.solid.bounds();
+    let (mut least, most) = cells.solid.bounds();
     for &(a, at) in &cells.planes {
         least[a] = least[a].max(at);
     }
-    let layer = if cells.is_fitted() {
-        (LAYER + 1e-9) * cells.lattice.spacing
-    } else {
-        0.0
+    // No site is fitted farther out than its layer: the search ends there.
+    let layer = |lower: &[f64; 3], upper: &[f64; 3]| {
+        if cells.is_fitted() {
+            (LAYER + 1e-9) * finest(&cells.lattice, lower, upper)
+        } else {
+            0.0
+        }
     };
-    (least, most) = (least.add_scalar(layer), most.add_scalar(-layer));
     let (mut lowest, mut highest) = ([0.0; 3], [0.0; 3]);
     for a in 0..cells.dimension {
-        let low = |lower: &[f64; 3], _: &[f64; 3]| lower[a].max(least[a]);
-        let high = |_: &[f64; 3], upper: &[f64; 3]| -upper[a].min(most[a]);
+        let low = |lower: &[f64; 3], upper: &[f64; 3]| lower[a].max(least[a] + layer(lower, upper));
+        let high =
+            |lower: &[f64; 3], upper: &[f64; 3]| -upper[a].min(most[a] - layer(lower, upper));
         let low = smallest(cells, cuts, wanted, low, |x| x[a]);
         let high = smallest(cells, cuts, wanted, high, |x| -x[a]);
         lowest[a] = low.first()?.0;
         highest[a] = -high.first()?.0;
     }
     Some((lowest, highest))
+}
+
+/// A bound (m) of the finest spacing in a box (m).
+fn finest(lattice: &Lattice, lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
+    lattice.grading.map_or(lattice.spacing, |grading| {
+        let (lower, upper) = (Vec3::from(*lower), Vec3::from(*upper));
+        let (middle, half) = ((lower + upper) * 0.5, (upper - lower) * 0.5);
+        let nearest = grading.from.distance(&middle) - half.norm();
+        grading.spacing(lattice.spacing, nearest)
+    })
 }
