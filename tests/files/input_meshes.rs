@@ -381,7 +381,9 @@ fn the_resolved_case_finds_its_files_and_knows_them() {
         { difference = [{ box = { size = [\"1 mm\", \"1 mm\", \"1 mm\"] } },\n\
           { obj = { file = \"ball.obj\", unit = \"1 mm\" }, shift = [\"0.1 mm\", 0, 0] }] } ]";
     let path = written(folder.path(), body, "");
-    for overrides in [vec![], vec!["spacing=\"0.2 mm\"".to_owned()]] {
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replacen("0.1 mm", "0.25 mm", 1)).unwrap();
+    for overrides in [vec![], vec!["spacing=\"0.3 mm\"".to_owned()]] {
         let case = load(&path, &overrides).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(case.resolved.matches("sha256").count(), 2);
         let again = files::input::parse("elsewhere/case.toml", &case.resolved, &[]);

@@ -154,8 +154,17 @@ fn change(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
 
 #[test]
 fn no_surface_makes_the_reader_panic() {
-    let budget = Budget::new(6000);
-    let mut random = random(&budget);
+    read(&Budget::new(1500));
+}
+
+#[test]
+#[ignore = "slow: more of the same"]
+fn no_surface_of_many_makes_the_reader_panic() {
+    read(&Budget::new(20_000));
+}
+
+fn read(budget: &Budget) {
+    let mut random = random(budget);
     let place = tempfile::tempdir().unwrap();
     let (mut met, mut seeds) = (Met::default(), seeds());
     let (begun, mut done, mut sound) = (seeds.len(), 0, 0);
