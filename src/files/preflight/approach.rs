@@ -1,7 +1,7 @@
 //! Times at which bodies meet, from their initial velocities.
 
 use model::{Body, Case, Vec3};
-use numerics::meetings::{MovingBox, meetings};
+use numerics::meetings::{Meetings, MovingBox};
 use populate::{self, Wanted, search};
 
 /// Bodies closer than this many spacings touch.
@@ -47,10 +47,9 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
     let most = MOST_OF_EACH * indices.len().max(FEW);
     let end = case.run.end_time;
     let untils = [f64::INFINITY, end, end / 16.0, end / 256.0];
-    let pairs = untils
-        .into_iter()
-        .find_map(|until| meetings(&boxes, until, most));
-    let pairs = pairs.or_else(|| meetings(&boxes, 0.0, usize::MAX));
+    let meetings = Meetings::new(&boxes);
+    let pairs = untils.iter().find_map(|&until| meetings.pairs(until, most));
+    let pairs = pairs.or_else(|| meetings.pairs(0.0, usize::MAX));
     let ends: Vec<Option<Ends>> = indices
         .iter()
         .map(|&index| populate::bounds(&case.bodies[index], case.dimension))
