@@ -1,5 +1,6 @@
 //! `whipple fragments`: the fragments of a run's snapshots, by the code of the run itself.
 
+mod debris;
 mod loaded;
 
 use std::fmt::Write as _;
@@ -10,6 +11,7 @@ use serde_json::{Value, json};
 use super::output_format::{self, OutputFormat, wrote};
 use super::results::ResultsError;
 use super::which::Which;
+use debris::{Debris, largest_pieces, main_body};
 use engine::fragments::{Census, Fragment, Rule, Share, find_alone};
 use files::FileOpener;
 use files::input;
@@ -25,7 +27,8 @@ use plot::{PlotError, choose, snapshots};
 /// Tell the fragments of a run: how many, how heavy, how large, how fast
 ///
 /// A fragment is matter that hangs together by particles near each other; of a model with symmetry
-/// planes the whole is told. The rule is that of the case's `[fragments]` unless options change it.
+/// planes the whole is told. Debris is what is of no body's largest piece: its fragments and what failed. The rule is that of
+/// the case's `[fragments]` unless options change it.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
   whipple fragments runs/impact
@@ -151,9 +154,18 @@ pub fn evaluate(args: &FragmentsArgs) -> Result<String, FragmentsError> {
         table.write_hdf5(path)?;
         wrote(path, "");
     }
-    args.format
-        .print(|| document(&loaded, &census, &options, &table));
-    Ok(report(&loaded, &census, &options))
+    let is_largest = largest_pieces(&census, loaded.bodies.len());
+    let debris = debris::of_bodies(&loaded, (&census, &is_largest), &included);
+    args.format.print(|| {
+        let mut document = document(&loaded, &census, &options, &table);
+        let debris = debris.iter().map(|debris| debris.document(&loaded.bodies));
+        document["debris"] = debris.collect();
+        document
+    });
+    let mut text = report(&loaded, &census, &options);
+    list_pieces(&loaded, (&census, &is_largest), &mut text);
+    list_debris(&loaded, &debris, &mut text);
+    Ok(text)
 }
 
 /// The snapshot that is asked for.
@@ -210,17 +222,54 @@ fn report(loaded: &Loaded, census: &Census, options: &FragmentOptions) -> String
     if options.include == Include::Intact {
         entry("failed", share(&census.excluded));
     }
+    text
+}
+
+/// Lists the largest piece of each body and the debris, the heaviest first.
+fn list_pieces(loaded: &Loaded, (census, is_largest): (&Census, &[bool]), text: &mut String) {
     if census.fragments.is_empty() {
-        return text;
+        return;
     }
-    text.push_str("\n     label  copies  particles        mass    diameter  velocity\n");
-    for fragment in census.fragments.iter().take(LISTED) {
-        list(fragment, loaded.dimension, &mut text);
+    text.push_str("\n     label  copies  particles        mass    diameter  body and velocity\n");
+    let mut left_out = false;
+    for (wanted, heading) in [(true, "largest piece of each body"), (false, "debris")] {
+        let all = census.fragments.iter().zip(is_largest);
+        let mut those = all
+            .filter(|(_, is_largest)| **is_largest == wanted)
+            .peekable();
+        if those.peek().is_some() {
+            let _ = writeln!(text, "{heading}:");
+        }
+        for (fragment, _) in those.by_ref().take(LISTED) {
+            list(fragment, loaded, text);
+        }
+        left_out |= those.next().is_some();
     }
-    if census.fragments.len() > LISTED {
+    if left_out {
         text.push_str("all of them: --csv FILE\n");
     }
-    text
+}
+
+/// Lists the debris of each body.
+fn list_debris(loaded: &Loaded, debris: &[Debris], text: &mut String) {
+    let per = ["kg/m^2", "kg/m", "kg"][loaded.dimension - 1];
+    if !debris.is_empty() {
+        text.push_str("\ndebris in all, beside the largest piece of each body:\n");
+    }
+    for of_body in debris {
+        let mass = |value: f64| shown(value, per);
+        let _ = writeln!(
+            text,
+            "{:<16} {} ({:.1} % of it): {} in {}, {} failed; at {}",
+            one_line(&loaded.bodies[of_body.body]),
+            mass(of_body.mass),
+            100.0 * of_body.share,
+            mass(of_body.in_fragments),
+            counted(of_body.fragments, "fragment"),
+            mass(of_body.failed),
+            shown_vector(&of_body.velocity[..loaded.dimension], "m/s"),
+        );
+    }
 }
 
 /// The whole report, in SI units, with the table of all fragments.
@@ -251,16 +300,18 @@ fn document(
     document
 }
 
-fn list(fragment: &Fragment, dimension: usize, text: &mut String) {
+fn list(fragment: &Fragment, loaded: &Loaded, text: &mut String) {
+    let dimension = loaded.dimension;
     let per = ["kg/m^2", "kg/m", "kg"][dimension - 1];
     let _ = writeln!(
         text,
-        "{:>10} {:>7} {:>10} {:>11} {:>11}  {}",
+        "{:>10} {:>7} {:>10} {:>11} {:>11}  {} {}",
         fragment.label,
         fragment.copies,
         fragment.particles,
         shown(fragment.mass, per),
         shown(fragment.diameter(), "m"),
+        one_line(&loaded.bodies[main_body(fragment)]),
         shown_vector(&fragment.velocity[..dimension], "m/s"),
     );
 }

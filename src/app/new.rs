@@ -89,6 +89,8 @@ const SCHEMA: &str = "whipple.schema.json";
 enum NewError {
     #[error("{} is there already: take another name, or remove it", .0.display())]
     Exists(PathBuf),
+    #[error("the path {0:?} is no UTF-8 text: take another name")]
+    Name(PathBuf),
     #[error("cannot make {}: {cause}", path.display())]
     Folder { path: PathBuf, cause: io::Error },
     #[error("{0}")]
@@ -113,6 +115,9 @@ pub fn run(args: &NewArgs) -> u8 {
 
 fn write(args: &NewArgs) -> Result<(), NewError> {
     let folder = &args.folder;
+    if folder.to_str().is_none() {
+        return Err(NewError::Name(folder.clone()));
+    }
     let case = folder.join("case.toml");
     for path in [&case, &folder.join(SCHEMA)] {
         if fs::symlink_metadata(path).is_ok() {

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 
 use super::{Case, Vec3};
+use numerics::extent::{Extent, around};
+use numerics::tree::Tree;
 
 /// Part of a speed by which bounds of it may be wrong by rounding.
 const ROUNDING: f64 = 1e-12;
@@ -11,9 +13,8 @@ const ROUNDING: f64 = 1e-12;
 /// have is kept of two of them.
 #[derive(Debug, Clone)]
 pub struct ClosingSpeeds {
-    /// The farthest from the middle of all first.
     known: Vec<Known>,
-    middle: Vec3,
+    tree: Tree<Range>,
 }
 
 /// A velocity of a body.
@@ -24,8 +25,13 @@ struct Known {
     velocity: Vec3,
     /// By how much velocities within the body differ from that (m/s).
     spread: f64,
-    /// Its speed against the middle of all, with the spread (m/s).
-    beyond: f64,
+}
+
+/// The range of some velocities (m/s), and the most of their spreads.
+#[derive(Debug, Clone)]
+struct Range {
+    ends: Extent,
+    spread: f64,
 }
 
 impl ClosingSpeeds {
@@ -50,62 +56,125 @@ impl ClosingSpeeds {
                     body,
                     velocity,
                     spread,
-                    beyond: 0.0,
                 });
             }
         }
-        let lower = known
-            .iter()
-            .fold(Vec3::repeat(f64::INFINITY), |least, one| {
-                least.inf(&one.velocity)
-            });
-        let upper = known
-            .iter()
-            .fold(Vec3::repeat(f64::NEG_INFINITY), |most, one| {
-                most.sup(&one.velocity)
-            });
-        let middle = 0.5 * (lower + upper);
-        for one in &mut known {
-            one.beyond = (one.velocity - middle).norm() + one.spread;
-        }
-        known.sort_by(|a, b| b.beyond.total_cmp(&a.beyond));
-        Self { known, middle }
+        Self::of(known)
+    }
+
+    fn of(known: Vec<Known>) -> Self {
+        let points: Vec<[f64; 3]> = known.iter().map(|one| one.velocity.into()).collect();
+        let range = |all: &[usize]| Range {
+            ends: around(all.iter().map(|&k| (points[k], points[k]))),
+            spread: all.iter().fold(0.0, |most, &k| known[k].spread.max(most)),
+        };
+        let tree = Tree::new(&points, range);
+        Self { known, tree }
     }
 
     /// The largest of two bodies (m/s); zero of a single one.
     #[must_use]
     pub fn largest(&self) -> f64 {
-        self.known.iter().fold(0.0, |largest, one| {
-            self.beyond(one, |one, other| one.body != other.body, largest)
-        })
+        let mut largest = 0.0;
+        for one in &self.known {
+            self.raise(one, &mut largest, f64::INFINITY);
+        }
+        largest
     }
 
     /// True if a body at a velocity (m/s) with a spread (m/s) is faster against another than a speed (m/s).
     pub(super) fn exceed(&self, body: usize, velocities: &[Vec3], spread: f64, speed: f64) -> bool {
         velocities.iter().any(|&velocity| {
+            let mut largest = speed;
             let one = Known {
                 body,
                 velocity,
                 spread,
-                beyond: (velocity - self.middle).norm() + spread,
             };
-            self.beyond(&one, |one, other| one.body != other.body, speed) > speed
+            self.raise(&one, &mut largest, speed);
+            largest > speed
         })
     }
 
-    /// The largest speed (m/s) of one against some of the others, or `least` if that is larger.
-    fn beyond(&self, one: &Known, counts: impl Fn(&Known, &Known) -> bool, least: f64) -> f64 {
-        let mut largest = least;
-        for other in &self.known {
-            // None of those that follow is faster.
-            if (one.beyond + other.beyond) * (1.0 + ROUNDING) <= largest {
-                break;
+    /// Raises a speed (m/s) to the largest of one against other bodies, until it is above what is `enough`.
+    fn raise(&self, one: &Known, largest: &mut f64, enough: f64) {
+        self.tree.search(
+            largest,
+            |largest, all| {
+                let (lower, upper) = all.ends;
+                let farthest =
+                    |a: usize| f64::max(one.velocity[a] - lower[a], upper[a] - one.velocity[a]);
+                let farthest = Vec3::from(std::array::from_fn(farthest)).norm();
+                let most = farthest + (one.spread + all.spread);
+                *largest <= enough && most * (1.0 + ROUNDING) > *largest
+            },
+            |largest, all| {
+                #[cfg(test)]
+                LOOKS.set(LOOKS.get() + all.len());
+                let others = all.iter().map(|&k| &self.known[k]);
+                for other in others.filter(|other| other.body != one.body) {
+                    let speed = (one.velocity - other.velocity).norm();
+                    *largest = largest.max(speed + (one.spread + other.spread));
+                }
+            },
+        );
+    }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Velocities that were looked at.
+    static LOOKS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Velocities of one speed in all directions, of bodies that spread by less than it.
+    fn all_around(count: u32) -> ClosingSpeeds {
+        let known = (0..count).map(|k| {
+            let [turn, height] = [7919, 104_729]
+                .map(|factor: u32| f64::from(k.wrapping_mul(factor) % 99_991) / 99_991.0);
+            let (z, angle) = (2.0 * height - 1.0, std::f64::consts::TAU * turn);
+            let across = (1.0 - z * z).sqrt();
+            Known {
+                body: k as usize / 2,
+                velocity: Vec3::new(across * libm::cos(angle), across * libm::sin(angle), z) * 50.0,
+                spread: f64::from(k % 7),
             }
-            if counts(one, other) {
-                let speed = (one.velocity - other.velocity).norm() + (one.spread + other.spread);
-                largest = largest.max(speed);
+        });
+        ClosingSpeeds::of(known.collect())
+    }
+
+    #[test]
+    fn the_largest_is_that_of_all_pairs() {
+        let speeds = all_around(300);
+        let mut largest = 0.0;
+        for a in &speeds.known {
+            for b in speeds.known.iter().filter(|b| b.body != a.body) {
+                let speed = (a.velocity - b.velocity).norm() + (a.spread + b.spread);
+                largest = f64::max(largest, speed);
             }
         }
-        largest
+        assert_eq!(speeds.largest().to_bits(), f64::to_bits(largest));
+        let one = &speeds.known[0];
+        let exceed = |speed| speeds.exceed(one.body, &[one.velocity], one.spread, speed);
+        assert!(exceed(99.0) && !exceed(largest));
+    }
+
+    #[test]
+    fn many_velocities_are_not_compared_with_each_other() {
+        let looks = |count| {
+            let (speeds, before) = (all_around(count), LOOKS.get());
+            let slow = 120.0;
+            assert!(speeds.largest() < slow);
+            for one in &speeds.known {
+                assert!(!speeds.exceed(one.body, &[one.velocity], one.spread, slow));
+            }
+            LOOKS.get() - before
+        };
+        let [few, many] = [1000, 8000].map(looks);
+        assert!(many < 16 * few, "{few} {many}");
     }
 }

@@ -204,6 +204,13 @@ impl Case {
         bodies.any(|body| self.materials[body.material].strength.yields())
     }
 
+    /// `true` if a material of a body tells its temperature.
+    #[must_use]
+    pub fn has_temperature(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].thermal.is_some())
+    }
+
     /// The largest sound speed (m/s) of what deforms; what is rigid has a material that carries nothing.
     #[must_use]
     pub fn fastest_sound(&self) -> f64 {

@@ -15,5 +15,6 @@ pub mod matrix;
 pub mod meetings;
 pub mod ordered;
 pub mod principal;
+pub mod tree;
 pub mod vector;
 pub mod virial;

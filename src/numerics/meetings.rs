@@ -1,9 +1,7 @@
-//! A tree over boxes in motion, which finds those that come together without a look at all pairs.
+//! Boxes in motion: those that come together, found without a look at all pairs.
 
 use crate::extent::{Extent, around};
-
-/// Boxes of a node that is not divided.
-const LEAF: usize = 4;
+use crate::tree::Tree;
 
 /// A box that keeps its velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,89 +12,50 @@ pub struct MovingBox {
     pub velocity: [f64; 3],
 }
 
-/// All pairs of boxes that have a point in common at some time from the start to `until` (s), each with its smaller
-/// index first, in order. `None` if there are more than `most`.
-#[must_use]
-pub fn meetings(boxes: &[MovingBox], until: f64, most: usize) -> Option<Vec<[usize; 2]>> {
-    let mut order: Vec<usize> = (0..boxes.len()).collect();
-    let mut nodes = Vec::new();
-    divide(boxes, &mut order, 0, &mut nodes);
-    let mut pairs = Vec::new();
-    let mut left = Vec::new();
-    for (a, moving) in boxes.iter().enumerate() {
-        let own = Motion::of(std::slice::from_ref(moving).iter());
-        left.extend((!nodes.is_empty()).then_some(0));
-        while let Some(node) = left.pop() {
-            let node: &Node = &nodes[node];
-            if !own.meets(&node.motion, until) {
-                continue;
-            }
-            if let Some(children) = node.children {
-                left.extend(children);
-                continue;
-            }
-            let after = order[node.first..node.end].iter().filter(|b| **b > a);
-            let meets = |b: &&usize| own.meets(&Motion::of([&boxes[**b]].into_iter()), until);
-            pairs.extend(after.filter(meets).map(|&b| [a, b]));
-            if pairs.len() > most {
-                return None;
-            }
+/// Boxes in motion, ready to be searched for those that come together.
+#[derive(Debug, Clone)]
+pub struct Meetings {
+    /// Of each box.
+    single: Vec<Motion>,
+    tree: Tree<Motion>,
+}
+
+impl Meetings {
+    /// Of some boxes.
+    #[must_use]
+    pub fn new(boxes: &[MovingBox]) -> Self {
+        let middle = |one: &MovingBox| {
+            let (lower, upper) = one.extent;
+            std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]))
+        };
+        let middles: Vec<[f64; 3]> = boxes.iter().map(middle).collect();
+        Self {
+            single: boxes
+                .iter()
+                .map(|one| Motion::of([one].into_iter()))
+                .collect(),
+            tree: Tree::new(&middles, |all| Motion::of(all.iter().map(|&b| &boxes[b]))),
         }
     }
-    pairs.sort_unstable();
-    Some(pairs)
-}
 
-/// Boxes by their places in an order.
-struct Node {
-    motion: Motion,
-    first: usize,
-    end: usize,
-    /// The nodes that it is divided into.
-    children: Option<[usize; 2]>,
-}
-
-/// Divides boxes at the median of their middles along the axis on which these differ most. Adds the node and those
-/// below it; returns its place.
-fn divide(
-    boxes: &[MovingBox],
-    order: &mut [usize],
-    first: usize,
-    nodes: &mut Vec<Node>,
-) -> Option<usize> {
-    if order.is_empty() {
-        return None;
+    /// All pairs of boxes that have a point in common at some time from the start to `until` (s), each with its smaller
+    /// index first, in order. `None` if there are more than `most`.
+    #[must_use]
+    pub fn pairs(&self, until: f64, most: usize) -> Option<Vec<[usize; 2]>> {
+        let mut pairs = Vec::new();
+        for (a, own) in self.single.iter().enumerate() {
+            self.tree.search(
+                &mut pairs,
+                |pairs, all| pairs.len() <= most && own.meets(all, until),
+                |pairs, all| {
+                    let meets = |b: &&usize| **b > a && own.meets(&self.single[**b], until);
+                    pairs.extend(all.iter().filter(meets).map(|&b| [a, b]));
+                },
+            );
+        }
+        pairs.sort_unstable();
+        (pairs.len() <= most).then_some(pairs)
     }
-    let place = nodes.len();
-    nodes.push(Node {
-        motion: Motion::of(order.iter().map(|&b| &boxes[b])),
-        first,
-        end: first + order.len(),
-        children: None,
-    });
-    if order.len() > LEAF {
-        let middle = |b: usize, axis: usize| {
-            let (lower, upper) = boxes[b].extent;
-            0.5 * (lower[axis] + upper[axis])
-        };
-        let middles = order.iter().map(|&b| {
-            let at = std::array::from_fn(|axis| middle(b, axis));
-            (at, at)
-        });
-        let (lower, upper) = around(middles);
-        let length = |axis: &usize| upper[*axis] - lower[*axis];
-        let axis = (0..3).max_by(|a, b| length(a).total_cmp(&length(b)));
-        let axis = axis.unwrap_or(0);
-        let half = order.len() / 2;
-        order.select_nth_unstable_by(half, |&a, &b| {
-            middle(a, axis).total_cmp(&middle(b, axis)).then(a.cmp(&b))
-        });
-        let (below, above) = order.split_at_mut(half);
-        let below = divide(boxes, below, first, nodes);
-        let above = divide(boxes, above, first + half, nodes);
-        nodes[place].children = below.zip(above).map(|(below, above)| [below, above]);
-    }
-    Some(place)
 }
 
 /// The box about some boxes, whose faces move so that they stay in it.
@@ -173,6 +132,7 @@ mod tests {
     #[test]
     fn the_tree_finds_what_all_pairs_do() {
         let boxes = cloud(400);
+        let known = Meetings::new(&boxes);
         for until in [0.0, 0.5, 10.0, f64::INFINITY] {
             let single = |b: usize| Motion::of([&boxes[b]].into_iter());
             let all = (0..boxes.len()).flat_map(|a| (a + 1..boxes.len()).map(move |b| [a, b]));
@@ -180,10 +140,10 @@ mod tests {
                 .filter(|&[a, b]| single(a).meets(&single(b), until))
                 .collect();
             assert!(!all.is_empty());
-            assert_eq!(meetings(&boxes, until, all.len()).unwrap(), all, "{until}");
-            assert_eq!(meetings(&boxes, until, all.len() - 1), None);
+            assert_eq!(known.pairs(until, all.len()).unwrap(), all, "{until}");
+            assert_eq!(known.pairs(until, all.len() - 1), None);
         }
-        assert_eq!(meetings(&[], 1.0, 0), Some(Vec::new()));
+        assert_eq!(Meetings::new(&[]).pairs(1.0, 0), Some(Vec::new()));
     }
 
     #[test]
@@ -194,7 +154,7 @@ mod tests {
         };
         let meet = |y: f64, velocity: [f64; 3], until: f64| {
             let boxes = [unit(0.0, 0.0, [0.0; 3]), unit(3.0, y, velocity)];
-            !meetings(&boxes, until, 1).unwrap().is_empty()
+            !Meetings::new(&boxes).pairs(until, 1).unwrap().is_empty()
         };
         assert!(meet(0.0, [-1.0, 0.0, 0.0], 2.0));
         assert!(!meet(0.0, [-1.0, 0.0, 0.0], 1.9));

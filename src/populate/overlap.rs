@@ -3,7 +3,7 @@
 use super::{Wanted, bounds, search};
 use model::{Body, Case, ContactMode, Vec3};
 use numerics::extent::Extent;
-use numerics::meetings::{MovingBox, meetings};
+use numerics::meetings::{Meetings, MovingBox};
 
 /// Bodies in touch have their outermost particles a mean spacing apart, somewhat less where curved
 /// faces follow a lattice; closer ones overlap (spacings).
@@ -43,9 +43,10 @@ pub fn close_pairs(case: &Case) -> Vec<[usize; 2]> {
             Some((index, still))
         })
         .unzip();
-    let pairs = meetings(&boxes, 0.0, usize::MAX).unwrap_or_default();
+    let pairs = Meetings::new(&boxes).pairs(0.0, usize::MAX);
     let pairs = pairs
         .into_iter()
+        .flatten()
         .map(|pair| pair.map(|place| indices[place]));
     let sees = |&[a, b]: &[usize; 2]| {
         !matches!(case.contact_between(a, b), ContactMode::None)

@@ -315,3 +315,39 @@ fn what_cannot_be_restarted_is_left_alone() {
     let said = complaint_alone(&["restart", out]);
     assert!(said.contains("has no checkpoint to restart from"), "{said}");
 }
+
+/// Names of bytes that are no text would mangle the folder of a run.
+#[test]
+fn a_case_with_a_name_that_is_no_text_is_refused() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let place = tempfile::tempdir().unwrap();
+    let name = |bytes: &[u8]| place.path().join(OsStr::from_bytes(bytes));
+    let (file, folder) = (name(b"caf\xe9.toml"), name(b"\xe9tude"));
+    let case = project("inputs/quarter-impact/case.toml");
+    fs::copy(&case, &file).unwrap();
+    fs::create_dir(&folder).unwrap();
+    fs::copy(&case, folder.join("case.toml")).unwrap();
+    for case in [&file, &folder] {
+        for words in [
+            &["run"][..],
+            &["check"],
+            &["check", "--json"],
+            &["plan"],
+            &["sweep", "--vary", "sph.alpha=1,2"],
+            &["new", "--from", "shield"],
+        ] {
+            if words[0] == "new" && *case == file {
+                continue;
+            }
+            let mut command = command(WHIPPLE);
+            command.current_dir(place.path());
+            let ended = end(command.arg(words[0]).arg(case).args(&words[1..])).with_code(2);
+            let said = ended.complaints("error:");
+            assert_eq!(said.len(), 1, "{ended:#?}");
+            assert!(said[0].contains("no UTF-8 text"), "{ended:#?}");
+        }
+    }
+    let left: Vec<_> = fs::read_dir(place.path()).unwrap().collect();
+    assert_eq!(left.len(), 2, "{left:?}");
+}

@@ -70,6 +70,18 @@ fn answers_are_documents_in_si_units() {
     let copies = copies.map(|row| row["copies"].as_u64().unwrap());
     assert_eq!(copies.sum::<u64>(), count);
     assert!(fragments["total_mass"].as_f64().unwrap() > 0.0);
+    // What is of no body's largest piece, with all that failed.
+    let fragments = document(&["fragments", run]);
+    let debris = fragments["debris"].as_array().unwrap().iter();
+    let of = |one: &Value, key: &str| one[key].as_f64().unwrap();
+    let failed: f64 = debris.clone().map(|one| of(one, "failed")).sum();
+    assert!(
+        (failed - of(&fragments["failed"], "mass")).abs() <= 1e-9 * of(&fragments, "total_mass")
+    );
+    for one in debris {
+        assert!(of(one, "mass") * (1.0 + 1e-9) >= of(one, "failed") + of(one, "in_fragments"));
+        assert!(one["body"].is_string() && of(one, "share") <= 1.0);
+    }
 
     let same = document(&["compare", run, run]);
     assert_eq!(same["agrees"], true);

@@ -97,7 +97,7 @@ fn a_bisection_finds_a_limit_for_each_combination() {
         "--vary",
         "body.sphere.velocity=2..6 km/s",
         "--bisect",
-        "history.kinetic_energy>0.5 J",
+        "history.kinetic_energy>2 J",
         "--within",
         "0.25",
         "--set",

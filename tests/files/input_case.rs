@@ -4,7 +4,7 @@ use files::input::{load, output_and_run_only, parse};
 use files::preflight::{approaches, warnings};
 use material::{AfterSpall, Failure, Spall, Strength, library};
 use model::{
-    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
+    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength, Vec3,
 };
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
@@ -144,6 +144,92 @@ fn impacts_of_plates_and_targets() {
         }
         let said = warnings(&case, &approaches(&case));
         assert!(said.is_empty(), "{name}: {said:?}");
+    }
+}
+
+/// One quantity in place of a vector is its length, as in a sweep.
+#[test]
+fn a_quantity_in_place_of_a_vector_is_its_length() {
+    let velocity = |set: &[&str]| ready("quarter-impact", set).bodies[1].velocity;
+    let oblique = "body.sphere.velocity=[0, \"3 km/s\", \"-4 km/s\"]";
+    let whole = ["symmetry=[]", oblique];
+    for (length, expected) in [
+        ("body.sphere.velocity=5 km/s", [0.0, 3e3, -4e3]),
+        ("body.1.velocity=\"1e3 m/s\"", [0.0, 600.0, -800.0]),
+        ("body.sphere.velocity=-10km/s", [0.0, -6e3, 8e3]),
+    ] {
+        let found = velocity(&[&whole[..], &[length]].concat());
+        assert!((found - Vec3::from(expected)).norm() < 1e-9, "{length}");
+    }
+    assert_eq!(
+        velocity(&["body.sphere.velocity.2=-2 km/s"]).as_slice(),
+        [0.0, 0.0, -2e3]
+    );
+}
+
+#[test]
+fn a_speed_flies_along_the_last_axis_at_its_angle_and_a_diameter_is_two_radii() {
+    let whole = ["symmetry=[]", "body.sphere.velocity=[0, 0, 0]"];
+    let text =
+        std::fs::read_to_string(crate::project::root().join("inputs/quarter-impact/case.toml"));
+    let text = text.unwrap();
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("velocity ="))
+        .unwrap();
+    let with =
+        |keys: &str| files::input::parse("case", &text.replace(line, keys), &strings(&whole[..1]));
+    let straight = with("speed = \"5 km/s\"").unwrap();
+    assert_eq!(straight.bodies[1].velocity.as_slice(), [0.0, 0.0, -5e3]);
+    let oblique = with("speed = \"2 km/s\"\nangle = \"30 deg\"").unwrap();
+    let expected = Vec3::new(1e3, 0.0, -3f64.sqrt() * 1e3);
+    assert!((oblique.bodies[1].velocity - expected).norm() < 1e-9);
+
+    let flat = |dimension: usize, shape: &str, keys: &str| {
+        let text = format!(
+            "dimension = {dimension}\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+             material.m.library = \"copper-taylor-bar\"\n\
+             [[body]]\nname = \"b\"\nmaterial = \"m\"\nshape.{shape}\n{keys}\n"
+        );
+        files::input::parse("case", &text, &[]).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let box_1 = "box = { size = [\"9 mm\"] }";
+    let [down, across, line] = [
+        flat(2, "sphere.diameter = \"9 mm\"", "speed = \"1 m/s\""),
+        flat(
+            2,
+            "sphere.radius = \"4.5 mm\"",
+            "speed = \"1 m/s\"\nangle = \"-45 deg\"",
+        ),
+        flat(1, box_1, "speed = \"1 m/s\""),
+    ]
+    .map(|case| case.bodies[0].clone());
+    assert_eq!(down.velocity.as_slice(), [0.0, -1.0, 0.0]);
+    let half = 0.5f64.sqrt();
+    assert!((across.velocity - Vec3::new(-half, -half, 0.0)).norm() < 1e-12);
+    assert_eq!(line.velocity.as_slice(), [-1.0, 0.0, 0.0]);
+    assert_eq!(down.shape, across.shape);
+
+    for (diameters, radii) in [
+        (
+            "cylinder = { diameter = \"9 mm\", inner_diameter = \"4 mm\", length = \"9 mm\" }",
+            "cylinder = { radius = \"4.5 mm\", inner_radius = \"2 mm\", length = \"9 mm\" }",
+        ),
+        (
+            "cone = { diameter = \"9 mm\", top_diameter = \"4 mm\", length = \"9 mm\" }",
+            "cone = { radius = \"4.5 mm\", top_radius = \"2 mm\", length = \"9 mm\" }",
+        ),
+        (
+            "ogive = { diameter = \"9 mm\", nose = \"9 mm\", length = \"18 mm\" }",
+            "ogive = { radius = \"4.5 mm\", nose = \"9 mm\", length = \"18 mm\" }",
+        ),
+        (
+            "torus = { diameter = \"20 mm\", tube_diameter = \"9 mm\" }",
+            "torus = { radius = \"10 mm\", tube_radius = \"4.5 mm\" }",
+        ),
+    ] {
+        let [a, b] = [diameters, radii].map(|shape| flat(3, shape, "").bodies[0].clone());
+        assert_eq!(a.shape, b.shape, "{diameters}");
     }
 }
 

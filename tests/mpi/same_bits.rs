@@ -482,10 +482,11 @@ fn flights_and_extremes_on_any_ranks_and_through_a_restart() {
             .any(|reason| reason == "flight")
     );
     let contacts = read("contacts.csv");
-    let [distances, a, b, bodies] =
-        ["closest_pair", "closest_a", "closest_b", "body_b"].map(|name| column(&contacts, name));
-    // The first rows are of the start.
-    let row = (3..distances.len())
+    let [times, distances, a, b, bodies] =
+        ["time", "closest_pair", "closest_a", "closest_b", "body_b"]
+            .map(|name| column(&contacts, name));
+    let row = (0..distances.len())
+        .filter(|&row| times[row] != "0.0")
         .min_by(|&i, &j| {
             let number = |k: usize| distances[k].parse::<f64>().expect("a number");
             number(i).total_cmp(&number(j))

@@ -222,6 +222,15 @@ impl Loaded {
         }
     }
 
+    /// Body, mass (kg) and velocity (m/s) of each particle, but for those that are no matter.
+    pub fn matter(&self) -> impl Iterator<Item = Option<(usize, f64, [f64; 3])>> {
+        let all = self.size.iter().zip(&self.body).zip(&self.mass);
+        let all = all.zip(&self.velocity);
+        all.map(|(((size, body), mass), velocity)| {
+            (*size > 0.0).then_some((*body as usize, *mass, *velocity))
+        })
+    }
+
     /// The particles that belong to fragments.
     pub fn included(&self, include: Include) -> Vec<bool> {
         self.damage

@@ -120,8 +120,7 @@ impl Sweep {
     }
 
     fn points(&self) -> Result<Vec<Point>, SweepError> {
-        let points = self.plan.points(&self.case, &self.known());
-        let mut points = points.map_err(SweepError::Typed)?;
+        let mut points = self.plan.points(&self.known());
         if self.definition.converges {
             for point in &mut points {
                 let spacing = point.values.first().and_then(|value| value.number);
@@ -302,20 +301,19 @@ impl Sweep {
         let folder = &self.definition.folder;
         let sheet = table::points(&self.plan.keys, &self.rows()?, &self.definition.answers);
         write_atomically(&folder.join("sweep.csv"), &sheet.text())?;
-        if let Some(sheet) = table::limits(&self.plan, &self.bisections()?) {
+        if let Some(sheet) = table::limits(&self.plan, &self.bisections()) {
             write_atomically(&folder.join("limits.csv"), &sheet.text())?;
         }
         Ok(())
     }
 
-    fn bisections(&self) -> Result<Vec<(Vec<values::Value>, Bisection)>, SweepError> {
+    fn bisections(&self) -> Vec<(Vec<values::Value>, Bisection)> {
         let known = self.known();
         let all = self.plan.combinations().into_iter().map(|values| {
-            let bisection = self.plan.bisection(&self.case, &values, &known)?;
-            Ok((values, bisection))
+            let bisection = self.plan.bisection(&values, &known);
+            (values, bisection)
         });
-        let all: Result<Vec<_>, String> = all.collect();
-        all.map_err(SweepError::Typed)
+        all.collect()
     }
 
     fn tally(&self) -> Result<Tally, SweepError> {

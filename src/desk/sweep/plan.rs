@@ -6,8 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use toml::Table;
-
 use super::condition::Condition;
 use super::point::Point;
 use super::values::{Range, Value, Values};
@@ -151,80 +149,65 @@ impl Plan {
 
     /// The points that are wanted, as far as is known: all of a grid; of a bisection those that were and the
     /// next ones. In the order of the table.
-    ///
-    /// # Errors
-    /// Those of [`Point::new`].
-    pub fn points(&self, case: &Table, known: &Known) -> Result<Vec<Point>, String> {
+    #[must_use]
+    pub fn points(&self, known: &Known) -> Vec<Point> {
         let mut points = Vec::new();
         for values in self.combinations() {
             if self.bisected.is_some() {
-                let (mut wanted, _) = self.search(case, &values, known)?;
+                let (mut wanted, _) = self.search(&values, known);
                 wanted.sort_by(|(a, _), (b, _)| a.total_cmp(b));
                 points.extend(wanted.into_iter().map(|(_, point)| point));
             } else {
-                points.push(Point::new(case, &self.keys, values)?);
+                points.push(Point::new(&self.keys, values));
             }
         }
-        Ok(points)
+        points
     }
 
     /// The bisection at some values of the grid.
-    ///
-    /// # Errors
-    /// Those of [`Point::new`].
-    pub fn bisection(
-        &self,
-        case: &Table,
-        values: &[Value],
-        known: &Known,
-    ) -> Result<Bisection, String> {
-        self.search(case, values, known)
-            .map(|(_, bisection)| bisection)
+    #[must_use]
+    pub fn bisection(&self, values: &[Value], known: &Known) -> Bisection {
+        self.search(values, known).1
     }
 
     /// Shares of the range that a bisection needs, with their points, and its state.
-    fn search(
-        &self,
-        case: &Table,
-        values: &[Value],
-        known: &Known,
-    ) -> Result<(Vec<(f64, Point)>, Bisection), String> {
+    fn search(&self, values: &[Value], known: &Known) -> (Vec<(f64, Point)>, Bisection) {
         let Some(bisected) = &self.bisected else {
-            return Ok((Vec::new(), Bisection::Open));
+            return (Vec::new(), Bisection::Open);
         };
         let [from, to] = bisected.range.ends;
         let value = |part: f64| bisected.range.value(from + (to - from) * part);
         let mut wanted = Vec::new();
-        let mut want = |part: f64| -> Result<Option<Option<bool>>, String> {
+        let mut want = |part: f64| -> Option<Option<bool>> {
             let mut values = values.to_vec();
             values.push(value(part));
-            let point = Point::new(case, &self.keys, values)?;
+            let point = Point::new(&self.keys, values);
             let answer = known.get(&point.name).copied();
             wanted.push((part, point));
-            Ok(answer)
+            answer
         };
-        let ends = [want(0.0)?, want(1.0)?];
+        let ends = [want(0.0), want(1.0)];
         let (Some(first), Some(last)) = (ends[0], ends[1]) else {
-            return Ok((wanted, Bisection::Open));
+            return (wanted, Bisection::Open);
         };
         let (Some(first), Some(last)) = (first, last) else {
-            return Ok((wanted, Bisection::Failed));
+            return (wanted, Bisection::Failed);
         };
         if first == last {
-            return Ok((wanted, Bisection::Nowhere(first)));
+            return (wanted, Bisection::Nowhere(first));
         }
         let (mut low, mut high) = (0.0, 1.0);
         while high - low > bisected.within {
             let half = 0.5 * (low + high);
-            match want(half)? {
-                None => return Ok((wanted, Bisection::Open)),
-                Some(None) => return Ok((wanted, Bisection::Failed)),
+            match want(half) {
+                None => return (wanted, Bisection::Open),
+                Some(None) => return (wanted, Bisection::Failed),
                 Some(Some(holds)) if holds == first => low = half,
                 Some(Some(_)) => high = half,
             }
         }
         let (no, yes) = if first { (high, low) } else { (low, high) };
-        Ok((wanted, Bisection::Between([value(no), value(yes)])))
+        (wanted, Bisection::Between([value(no), value(yes)]))
     }
 }
 
@@ -241,7 +224,7 @@ mod tests {
     #[test]
     fn a_grid_has_all_pairs_the_last_key_fastest() {
         let plan = plan(&["a=1,2", "b=x,y,z"], None).unwrap();
-        let points = plan.points(&Table::new(), &Known::new()).unwrap();
+        let points = plan.points(&Known::new());
         let texts: Vec<String> = points.iter().map(|p| p.settings.join(" ")).collect();
         assert_eq!(
             texts,
@@ -255,14 +238,13 @@ mod tests {
     /// each point is asked once.
     #[test]
     fn a_bisection_finds_where_a_condition_changes() {
-        let case = Table::new();
         for turned in [false, true] {
             let plan = plan(&["a=7", "v=0..8 m/s"], Some("x>1")).unwrap();
             let holds = |v: f64| (v > 5.3) != turned;
             let mut known = Known::new();
             let mut runs = 0;
             loop {
-                let points = plan.points(&case, &known).unwrap();
+                let points = plan.points(&known);
                 let open: Vec<_> = points
                     .iter()
                     .filter(|p| !known.contains_key(&p.name))
@@ -278,7 +260,7 @@ mod tests {
             }
             assert_eq!(runs, 5);
             let values = &plan.combinations()[0];
-            let bisection = plan.bisection(&case, values, &known).unwrap();
+            let bisection = plan.bisection(values, &known);
             let expected = if turned {
                 ["6 m/s", "5 m/s"]
             } else {
@@ -290,14 +272,13 @@ mod tests {
 
     #[test]
     fn ends_alike_and_failed_runs_end_a_bisection() {
-        let case = Table::new();
         let plan = plan(&["v=0..8"], Some("x>1")).unwrap();
-        let points = plan.points(&case, &Known::new()).unwrap();
+        let points = plan.points(&Known::new());
         assert_eq!(points.len(), 2);
         let all = |of: [Option<bool>; 2]| -> Known {
             points.iter().map(|p| p.name.clone()).zip(of).collect()
         };
-        let bisection = |known: &Known| plan.bisection(&case, &[], known).unwrap();
+        let bisection = |known: &Known| plan.bisection(&[], known);
         assert_eq!(
             bisection(&all([Some(true), Some(true)])),
             Bisection::Nowhere(true)

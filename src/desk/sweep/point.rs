@@ -3,10 +3,8 @@
 use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
-use toml::{Table, Value as Toml};
 
 use super::values::Value;
-use model::units;
 
 /// Longest part of a folder's name that is made of values (bytes).
 const LONGEST: usize = 80;
@@ -23,20 +21,16 @@ pub struct Point {
 }
 
 impl Point {
-    /// The point of some keys and values in a case, whose resolved text is given.
-    ///
-    /// # Errors
-    /// A message, for a length of something that is no vector with a direction.
-    pub fn new(case: &Table, keys: &[String], values: Vec<Value>) -> Result<Self, String> {
+    /// The point of some keys and values.
+    #[must_use]
+    pub fn new(keys: &[String], values: Vec<Value>) -> Self {
         let pairs = keys.iter().zip(&values);
-        let settings = pairs.map(|(key, value)| setting(case, key, value));
-        let settings: Vec<String> = settings.collect::<Result<_, _>>()?;
-        let name = name(keys, &values);
-        Ok(Self {
+        let settings = pairs.map(|(key, value)| format!("{key}={}", value.text));
+        Self {
+            settings: settings.collect(),
+            name: name(keys, &values),
             values,
-            settings,
-            name,
-        })
+        }
     }
 
     /// The point for people: `velocity = 3 km/s, angle = 45 deg`.
@@ -54,64 +48,6 @@ impl Point {
 #[must_use]
 pub fn short(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
-}
-
-/// `key=value`; a number for a key that holds a vector sets the length of the vector, whose
-/// direction stays.
-fn setting(case: &Table, key: &str, value: &Value) -> Result<String, String> {
-    let of_case = find(case, key).and_then(Toml::as_array);
-    let (Some(vector), Some((length, _))) = (of_case, value.number) else {
-        return Ok(format!("{key}={}", value.text));
-    };
-    let components = vector.iter().map(|component| match component {
-        Toml::Integer(0) => Some(0.0),
-        Toml::Float(x) => Some(*x),
-        Toml::String(text) => units::parse(text).ok().map(|(si, _)| si),
-        _ => None,
-    });
-    let components: Option<Vec<f64>> = components.collect();
-    let components = components.unwrap_or_default();
-    let norm = components.iter().fold(0.0, |n, c| libm::hypot(n, *c));
-    if norm == 0.0 || !norm.is_finite() {
-        return Err(format!(
-            "`{key}` has no direction in the case: `{}` cannot be its length",
-            value.text
-        ));
-    }
-    let (scale, unit) = split(&value.text).unwrap_or((length, ""));
-    let texts: Vec<String> = components
-        .iter()
-        .map(|c| format!("\"{} {unit}\"", scale * (c / norm)))
-        .collect();
-    Ok(format!("{key}=[{}]", texts.join(", ")))
-}
-
-/// The number that a text begins with, and its unit.
-fn split(text: &str) -> Option<(f64, &str)> {
-    let ends = (1..=text.len()).rev();
-    let mut ends = ends.filter(|&end| text.is_char_boundary(end));
-    ends.find_map(|end| {
-        let number = text[..end].trim_end().parse().ok()?;
-        Some((number, text[end..].trim()))
-    })
-}
-
-/// The value of a dotted key; bodies and other tables in a row go by their names or numbers.
-fn find<'a>(case: &'a Table, key: &str) -> Option<&'a Toml> {
-    let mut parts = key.split('.').map(|part| part.trim().trim_matches('"'));
-    let mut here = case.get(parts.next()?)?;
-    for part in parts {
-        here = match here {
-            Toml::Table(table) => table.get(part)?,
-            Toml::Array(tables) => {
-                let named = |table: &&Toml| table.get("name").and_then(Toml::as_str) == Some(part);
-                let table = tables.iter().find(named);
-                table.or_else(|| tables.get(part.parse::<usize>().ok()?))?
-            }
-            _ => return None,
-        };
-    }
-    Some(here)
 }
 
 /// A folder's name: the values, as far as file systems take them, and a digest of keys and values.
@@ -144,48 +80,12 @@ fn name(keys: &[String], values: &[Value]) -> String {
 mod tests {
     use super::*;
 
-    const CASE: &str = r#"
-        spacing = "0.02 mm"
-        [[body]]
-        name = "plate"
-        [[body]]
-        name = "sphere"
-        velocity = [0, "3 km/s", "-4 km/s"]
-        [contact]
-        mode = "overlap"
-    "#;
-
-    fn point(key: &str, value: &str) -> Result<Point, String> {
-        let case: Table = CASE.parse().unwrap();
-        Point::new(&case, &[key.to_owned()], vec![Value::new(value)])
-    }
-
-    #[test]
-    fn a_number_for_a_vector_is_its_length() {
-        let settings = |key, value| point(key, value).unwrap().settings[0].clone();
-        assert_eq!(
-            settings("body.sphere.velocity", "5 km/s"),
-            "body.sphere.velocity=[\"0 km/s\", \"3 km/s\", \"-4 km/s\"]"
-        );
-        assert_eq!(
-            settings("body.1.velocity", "1e3 m/s"),
-            "body.1.velocity=[\"0 m/s\", \"600 m/s\", \"-800 m/s\"]"
-        );
-        assert_eq!(
-            settings("body.sphere.velocity", "[1, 2, 3]"),
-            "body.sphere.velocity=[1, 2, 3]"
-        );
-        assert_eq!(settings("spacing", "0.03 mm"), "spacing=0.03 mm");
-        assert_eq!(
-            settings("contact.mode", "potential"),
-            "contact.mode=potential"
-        );
-        assert_eq!(settings("no.such.key", "3"), "no.such.key=3");
+    fn name(key: &str, value: &str) -> String {
+        Point::new(&[key.to_owned()], vec![Value::new(value)]).name
     }
 
     #[test]
     fn folders_have_names_of_their_own() {
-        let name = |key, value| point(key, value).unwrap().name;
         let a = name("spacing", "0.03 mm");
         assert!(a.starts_with("spacing=0.03mm-"), "{a}");
         assert_ne!(a, name("spacing", "0.03  mm"));

@@ -184,7 +184,7 @@ mod tests {
     fn point(values: &[&str]) -> Point {
         let keys: Vec<String> = (0..values.len()).map(|k| format!("a.k{k}")).collect();
         let values = values.iter().map(|v| Value::new(v)).collect();
-        Point::new(&toml::Table::new(), &keys, values).unwrap()
+        Point::new(&keys, values)
     }
 
     #[test]

@@ -65,12 +65,14 @@ pub enum Values {
 
 impl Values {
     /// Reads `3, 5, 7 km/s` (a unit at the end holds for numbers without), `3..9 km/s` (five
-    /// values) or `3..9/7 km/s` (seven).
+    /// values) or `3..9/7 km/s` (seven). Dots of a path and in quotes are no range.
     ///
     /// # Errors
     /// A message on a text of another form.
     pub fn parse(text: &str) -> Result<Self, String> {
-        if let Some((from, rest)) = text.split_once("..") {
+        if let Some((from, rest)) = text.split_once("..")
+            && !(text.contains(['"', '\'']) || from.ends_with('/') || rest.starts_with('/'))
+        {
             return range(from, rest);
         }
         let texts = split(text);
@@ -82,7 +84,7 @@ impl Values {
             return Err(format!("more than {MOST} values"));
         }
         let last = texts.last().copied().unwrap_or_default();
-        let unit = last.trim_start_matches(is_of_number).trim();
+        let unit = units::split(last).map_or("", |(_, unit)| unit);
         let with_unit = |text: &str| {
             let is_bare = text.parse::<f64>().is_ok();
             if is_bare && last.parse::<f64>().is_err() && units::parse(last).is_ok() {
@@ -109,10 +111,6 @@ impl Values {
     }
 }
 
-fn is_of_number(c: char) -> bool {
-    c.is_ascii_digit() || matches!(c, '.' | '+' | '-')
-}
-
 /// Reads both sides of `..`.
 fn range(from: &str, rest: &str) -> Result<Values, String> {
     let number = |text: &str| {
@@ -120,8 +118,7 @@ fn range(from: &str, rest: &str) -> Result<Values, String> {
         parsed.ok_or_else(|| format!("`{}` is no number", text.trim()))
     };
     let rest = rest.trim();
-    let end = rest.find(|c: char| !is_of_number(c)).unwrap_or(rest.len());
-    let (to, after) = rest.split_at(end);
+    let (to, after) = units::split(rest).unwrap_or((rest, ""));
     let (count, unit) = match after.strip_prefix('/') {
         None => (VALUES, after.trim()),
         Some(after) => {
@@ -135,6 +132,11 @@ fn range(from: &str, rest: &str) -> Result<Values, String> {
                 .ok_or_else(|| format!("`{count}` is no count of values, which is 2 to {MOST}"))?;
             (count, unit.trim())
         }
+    };
+    // Either end may have the unit.
+    let from = match units::split(from) {
+        Some((number, own)) if own == unit => number,
+        _ => from,
     };
     let range = Range {
         ends: [number(from)?, number(to)?],
@@ -187,6 +189,11 @@ mod tests {
             texts("3..9/4 km/s"),
             ["3 km/s", "5 km/s", "7 km/s", "9 km/s"]
         );
+        assert_eq!(texts("3 km/s..9 km/s"), texts("3..9 km/s"));
+        assert_eq!(texts("1e3, 2.5e3 m/s"), ["1e3 m/s", "2.5e3 m/s"]);
+        assert_eq!(texts("1e-3..2e-3/2 m"), ["0.001 m", "0.002 m"]);
+        assert_eq!(texts("../a.csv, b/../c.csv"), ["../a.csv", "b/../c.csv"]);
+        assert_eq!(texts("\"a..b\""), ["\"a..b\""]);
         assert_eq!(texts("0..1"), ["0", "0.25", "0.5", "0.75", "1"]);
         assert_eq!(texts("-1e-3, 2e-3"), ["-1e-3", "2e-3"]);
         assert_eq!(texts("0.1..0.4/4"), ["0.1", "0.2", "0.3", "0.4"]);

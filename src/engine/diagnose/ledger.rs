@@ -56,6 +56,12 @@ impl NearestPair {
 }
 
 impl PairState {
+    /// True if the two bodies have pushed each other, or have been within reach since the last row.
+    #[must_use]
+    pub fn has_met(&self) -> bool {
+        self.extremes.closest.is_some() || self.touching > 0 || self.impulse != [0.0; 3]
+    }
+
     /// Takes the sums of a step of which dt (s) is left to book; none if there are none. Forces `along`
     /// an axis are those of no symmetry plane normal to it.
     pub(super) fn book(&mut self, sums: Option<&PairSums>, along: [bool; 3], dt: f64) {

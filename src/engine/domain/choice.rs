@@ -54,8 +54,15 @@ impl Choice {
         (positions, work): (&[[f64; 3]], &[u32]),
         reach: impl Fn(usize) -> f64 + Sync,
     ) {
-        self.halos.count(comm, slabs, positions, &reach);
-        let mut best = self.halos.largest();
+        // Thin slabs that reach over each other take long to count, and are worse than what comes by a factor: then what
+        // some ranks have of them is enough.
+        let mut is_known = self.seen.is_some();
+        let mut best = if is_known {
+            self.halos.count(comm, slabs, positions, &reach);
+            self.halos.largest()
+        } else {
+            self.halos.of_some(comm, slabs, positions, &reach)
+        };
         if self.seen.is_some_and(|seen| is_alike(seen, best)) {
             return;
         }
@@ -68,10 +75,19 @@ impl Choice {
             trial.reset(axes, levels, ranks);
             balance.cut(comm, trial, (positions, work), rank_speeds);
             self.halos.count(comm, trial, positions, &reach);
-            if is_worthwhile(self.halos.largest(), best) {
-                best = self.halos.largest();
+            let largest = self.halos.largest();
+            if !is_known && !is_worthwhile(largest, best) {
+                self.halos.count(comm, slabs, positions, &reach);
+                (is_known, best) = (true, self.halos.largest());
+            }
+            if is_worthwhile(largest, best) {
+                (is_known, best) = (true, largest);
                 std::mem::swap(slabs, trial);
             }
+        }
+        if !is_known {
+            self.halos.count(comm, slabs, positions, &reach);
+            best = self.halos.largest();
         }
         self.seen = Some(best);
     }
@@ -165,6 +181,28 @@ mod tests {
             let least = *halos.iter().min().unwrap();
             assert!(!is_worthwhile(least, halos[levels - 1]), "{halos:?}");
         }
+    }
+
+    /// Slabs of one level, which reach over each other the more the more ranks there are, are counted of some ranks alone.
+    #[test]
+    #[allow(clippy::cast_precision_loss, reason = "few particles")]
+    fn the_work_of_a_choice_grows_as_particles_do() {
+        let each = |layers: u32| {
+            // No two particles lie in one layer.
+            let width = f64::from(layers);
+            let turned = |[x, y, z]: [f64; 3]| {
+                [x + (y + z / width) / width, y + z / width, z].map(|x| x + 0.5)
+            };
+            let positions: Vec<[f64; 3]> = lattice([layers; 3]).into_iter().map(turned).collect();
+            let ranks = positions.len() / 27;
+            let mut slabs = NestedSlabs::on_first([0, 1, 2], 1, ranks);
+            let mut choice = Choice::of(3, 0);
+            revise(&mut choice, &mut slabs, &positions);
+            assert_eq!(slabs.levels(), 3);
+            choice.halos.found as f64 / positions.len() as f64
+        };
+        let [few, many] = [12, 24].map(each);
+        assert!(many < 1.8 * few, "{few} {many}");
     }
 
     /// Cuts follow a body that spreads along another axis; one that stays as it is keeps its slabs.

@@ -23,10 +23,16 @@ pub(super) struct HaloCount {
     received: Vec<AtomicU64>,
     /// The same of all ranks.
     halos: Vec<u64>,
+    /// Particles that ranks would receive in all counts.
+    #[cfg(test)]
+    pub(super) found: u64,
 }
 
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
+
+/// Ranks whose halos tell of those of all.
+const SOME: usize = 8;
 
 /// No place.
 const NOWHERE: Brick = Brick {
@@ -46,6 +52,43 @@ impl HaloCount {
     ) {
         self.find_extents(comm, slabs, positions, reach);
         self.find_halos(comm, slabs, positions, reach);
+    }
+
+    /// The most particles of others that any of some ranks would have: no more than the most of all. Collective.
+    pub(super) fn of_some(
+        &mut self,
+        comm: &Comm,
+        slabs: &NestedSlabs,
+        positions: &[[f64; 3]],
+        reach: &(impl Fn(usize) -> f64 + Sync),
+    ) -> u64 {
+        self.find_extents(comm, slabs, positions, reach);
+        let extents = &self.extents;
+        let ranks = 0..slabs.ranks();
+        let taken: Vec<usize> = ranks.filter(|&rank| !extents[rank].is_empty()).collect();
+        // Even places, of which none is the end, where halos are smaller.
+        let places = (0..SOME).map(|k| (2 * k + 1) * taken.len() / (2 * SOME));
+        let some = places.filter_map(|place| taken.get(place));
+        let some: Vec<(Brick, Extent)> = some
+            .map(|&rank| (slabs.region(rank), extents[rank]))
+            .collect();
+        let tasks = positions.par_chunks(SHARE).enumerate();
+        let counts = tasks.map(|(task, positions)| {
+            let mut counts = [0; SOME];
+            for (k, position) in positions.iter().enumerate() {
+                let reach = reach(task * SHARE + k);
+                for (count, (region, extent)) in counts.iter_mut().zip(&some) {
+                    let is_near = extent.is_near((position, position), reach + extent.reach);
+                    *count += u64::from(is_near && !region.holds(position));
+                }
+            }
+            counts
+        });
+        let add = |a: [u64; SOME], b: [u64; SOME]| std::array::from_fn(|k| a[k] + b[k]);
+        // same bits in any order: whole numbers
+        let mut counts = counts.reduce(|| [0; SOME], add);
+        comm.sum_u64(&mut counts);
+        counts.into_iter().max().unwrap_or(0)
     }
 
     /// After [`Self::count`]: the most particles of others that a rank would have.
@@ -127,6 +170,10 @@ impl HaloCount {
         let received = self.received.iter_mut().map(|received| *received.get_mut());
         self.halos.extend(received);
         comm.sum_u64(&mut self.halos);
+        #[cfg(test)]
+        {
+            self.found += self.halos.iter().sum::<u64>();
+        }
     }
 
     /// Bytes allocated.
@@ -179,6 +226,10 @@ mod tests {
             let counted: Vec<u64> = counted.iter().map(|tally| tally.halo).collect();
             prop_assert_eq!(&count.halos, &counted);
             prop_assert_eq!(count.largest(), counted.into_iter().max().unwrap());
+            let some = count.of_some(&Comm::solo(), &slabs, &positions, &|i| reach[i]);
+            prop_assert!(some <= count.largest());
+            let few = (0..slabs.ranks()).filter(|&rank| !count.extents[rank].is_empty()).count() <= SOME;
+            prop_assert!(!few || some == count.largest());
         }
     }
 }

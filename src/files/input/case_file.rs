@@ -8,11 +8,25 @@ use results::regular::content;
 /// Longest file that is read as a case (bytes): that of some 10⁵ rows of a table of time.
 const LONGEST_CASE: u64 = 16_000_000;
 
+/// Complains of a path that is no text: the folder of a run, the files that a case names and what runs record of it
+/// follow its path.
+///
+/// # Errors
+/// [`InputError::Name`].
+fn check_name(path: &Path) -> Result<(), InputError> {
+    if path.to_str().is_some() {
+        return Ok(());
+    }
+    let path = path.to_owned();
+    Err(InputError::Name { path })
+}
+
 /// The path and the text of a case file, or of the `case.toml` in a folder.
 ///
 /// # Errors
-/// [`InputError::Read`], [`InputError::NoText`].
+/// [`InputError::Name`], [`InputError::Read`], [`InputError::NoText`].
 pub fn text(path: &Path) -> Result<(PathBuf, String), InputError> {
+    check_name(path)?;
     let path = if path.is_dir() {
         path.join("case.toml")
     } else {

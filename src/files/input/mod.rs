@@ -51,6 +51,12 @@ pub fn described() -> serde_json::Value {
 /// Why a case cannot be read. `Display` is the whole message for the user, several lines long.
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {
+    /// The path of the case is no text.
+    #[error("error: the path of the case, {path:?}, is no UTF-8 text: rename the file or folder")]
+    Name {
+        /// The path.
+        path: PathBuf,
+    },
     /// The file itself cannot be read.
     #[error("error: cannot read the case {}: {cause}", path.display())]
     Read {

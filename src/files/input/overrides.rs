@@ -11,6 +11,7 @@ use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
 use super::source::Diagnostic;
+use model::units;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
 pub(super) const RESTARTABLE: [&str; 6] =
@@ -63,8 +64,7 @@ impl<'t> Override<'t> {
         let last = path.pop().expect("a parsed path has a key");
         let mut path = path.into_iter();
         let Some(first) = path.next() else {
-            document.insert(last, value);
-            return Ok(());
+            return replace(document, last, value);
         };
         let mut place = entry(document, first);
         for key in path {
@@ -72,16 +72,15 @@ impl<'t> Override<'t> {
         }
         let span = last.span();
         match place.get_mut() {
-            DeValue::Table(table) => {
-                table.insert(last, value);
-            }
+            DeValue::Table(table) => replace(table, last, value),
             DeValue::Array(array) => {
                 let index = element(array, &last)?;
-                array.as_mut()[index] = value;
+                let place = &mut array.as_mut()[index];
+                *place = in_place_of(place, value)?;
+                Ok(())
             }
-            _ => return Err(not_a_table(&span)),
+            _ => Err(not_a_table(&span)),
         }
-        Ok(())
     }
 
     /// Complains if the override changes more than a restart may.
@@ -137,6 +136,63 @@ fn parse_value(text: &str, start: usize) -> Result<Value<'_>, Diagnostic> {
         }
         Err(_) => Ok(Spanned::new(span, DeValue::String(Cow::Borrowed(text)))),
     }
+}
+
+/// Gives a key of a table another value.
+fn replace<'t>(
+    table: &mut DeTable<'t>,
+    key: Key<'t>,
+    mut value: Value<'t>,
+) -> Result<(), Diagnostic> {
+    // Where there are times, a list is no vector but has a value for each of them.
+    let name: &str = key.get_ref();
+    if let (Some(old), false) = (table.get(name), table.contains_key("times")) {
+        value = in_place_of(old, value)?;
+    }
+    table.insert(key, value);
+    Ok(())
+}
+
+/// What stands in place of an old value: for a vector a quantity of its dimension is its length, and its
+/// direction stays.
+fn in_place_of<'t>(old: &Value<'t>, value: Value<'t>) -> Result<Value<'t>, Diagnostic> {
+    let lengthened = |vector: &DeArray<'t>, text: &str| {
+        let (_, dimension) = units::parse(text).ok()?;
+        let components = vector.iter().map(|component| {
+            let text = match component.get_ref() {
+                DeValue::String(text) => text.as_ref(),
+                DeValue::Integer(number) => number.as_str(),
+                DeValue::Float(number) => number.as_str(),
+                _ => return None,
+            };
+            let (si, powers) = units::parse(text).ok()?;
+            (powers == dimension || si == 0.0).then_some(si)
+        });
+        let components: Vec<f64> = components.collect::<Option<_>>()?;
+        let (length, unit) = units::split(text).filter(|(_, unit)| !unit.is_empty())?;
+        Some((components, length.parse::<f64>().ok()?, unit.to_owned()))
+    };
+    let (DeValue::Array(vector), DeValue::String(text)) = (old.get_ref(), value.get_ref()) else {
+        return Ok(value);
+    };
+    let Some((components, length, unit)) = lengthened(vector, text) else {
+        return Ok(value);
+    };
+    let norm = components.iter().fold(0.0, |n, c| libm::hypot(n, *c));
+    if norm == 0.0 || !norm.is_finite() {
+        let title =
+            format!("the vector has no direction in the case: `{text}` cannot be its length");
+        return Err(Diagnostic::new(value.span(), title));
+    }
+    let mut array = DeArray::new();
+    for component in components {
+        let text = format!("{} {unit}", length * (component / norm));
+        array.push(Spanned::new(
+            value.span(),
+            DeValue::String(Cow::Owned(text)),
+        ));
+    }
+    Ok(Spanned::new(value.span(), DeValue::Array(array)))
 }
 
 fn moved_range(span: &Range<usize>, by: usize) -> Range<usize> {

@@ -9,8 +9,8 @@ use toml::Spanned;
 use super::forms::{Named, OneOrMany};
 use super::profile::ProfileParams;
 use super::quantity::{
-    Acceleration, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature, Time,
-    Velocity,
+    Acceleration, Angle, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature,
+    Time, Velocity,
 };
 use model::{Axis, BodyForm, SphForm};
 
@@ -134,6 +134,11 @@ tables! {
         spacing: Option<Spanned<SpacingParams>> => "the case's";
         /// Initial velocity.
         velocity: Option<Spanned<Vec<Spanned<ProfileParams<Velocity>>>>> => "at rest";
+        /// Initial speed, in place of `velocity`, along the last axis towards its smaller coordinates: `-z`, in two
+        /// dimensions `-y`, in one `-x`.
+        speed: Option<Placed<Velocity>>, NotNegative;
+        /// Obliquity of `speed`: between the velocity and that axis, turned towards `+x`.
+        angle: Option<Placed<Angle>> = "0", Any;
         /// Initial angular velocity.
         angular_velocity: Option<Spanned<AngularVelocityParams>> => "none";
         /// Initial density.

@@ -62,7 +62,7 @@ impl Quantity {
 }
 
 /// The quantities of a case that `names` choose: as [`quantities`], but by default none that
-/// `particles` have no use for. The stress mass, which distinguishes stress points from particles, is
+/// `particles` have no use for, and the temperature and the fragment where the case tells them. The stress mass, which distinguishes stress points from particles, is
 /// always there where a case has such points, and the mass where particles have several sizes.
 ///
 /// # Errors
@@ -84,6 +84,9 @@ pub fn quantities_of(
     }
     if case.fragments.is_some() && by_default {
         names.push(FRAGMENT.to_owned());
+    }
+    if case.has_temperature() && by_default {
+        names.push(TEMPERATURE.to_owned());
     }
     let role = "stress_mass".to_owned();
     if case.sph.form == SphForm::StressPoints && !names.contains(&role) {
@@ -144,6 +147,28 @@ pub fn quantities(names: &[String]) -> Result<Vec<Quantity>, OutputError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_case_has_its_temperature_by_default() {
+        let cube = |library: &str| {
+            format!(
+                "dimension = 3\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+                 material.m.library = \"{library}\"\nmaterial.unused.library = \"aluminium-2024\"\n\
+                 [[body]]\nname = \"cube\"\nmaterial = \"m\"\n\
+                 shape.box.size = [\"9 mm\", \"9 mm\", \"9 mm\"]\n"
+            )
+        };
+        for (library, expected) in [("aluminium-2024", true), ("copper-taylor-bar", false)] {
+            let case = crate::input::parse("cube", &cube(library), &[]).unwrap();
+            let store = engine::step::store_of(&case);
+            let names = |fields: &[String]| {
+                let chosen = quantities_of(&case, fields, &store).unwrap();
+                chosen.iter().any(|q| q.name() == TEMPERATURE)
+            };
+            assert_eq!(names(&[]), expected, "{library}");
+            assert!(!names(&["pressure".to_owned()]));
+        }
+    }
 
     #[test]
     fn names_choose_quantities_and_id_and_body_come_with_them() {

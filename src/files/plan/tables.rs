@@ -20,9 +20,8 @@ pub(super) fn bytes(case: &Case, steps: f64) -> f64 {
     let [rows, of_bodies] = RowSchedule::of(case).counts(steps, case.run.end_time);
     let width = |list| columns(case.dimension, list).len() as f64;
     let bodies = case.bodies.len() as f64;
-    let [touching, apart] = pairs(case);
     let mut each_row = NUMBER * width(HISTORY);
-    each_row += width(CONTACTS) * (NUMBER * touching + NOUGHT * apart);
+    each_row += NUMBER * width(CONTACTS) * touching(case);
     each_row += NUMBER * width(LOADS) * case.load_names().count() as f64;
     let sides = 2.0 * case.measure.witnesses.len() as f64 * bodies;
     each_row += NOUGHT * width(WITNESS) * sides;
@@ -34,27 +33,12 @@ pub(super) fn bytes(case: &Case, steps: f64) -> f64 {
     rows * each_row + of_bodies * figures + gauges(case, steps)
 }
 
-/// Pairs of bodies with rows of contacts that begin near each other, and those that do not.
+/// Pairs of bodies with contact that begin near each other. The rows of others begin once they meet.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn pairs(case: &Case) -> [f64; 2] {
-    let named = case.contacts.iter();
-    let named = named.filter(|pair| pair.mode.class().is_some()).count() as f64;
-    let all = case.bodies.len() as f64;
-    let rigid = case.bodies.iter().filter(|body| body.rigid.is_some());
-    let rigid = rigid.count() as f64;
-    let pairs = if case.default_contact.class().is_some() {
-        0.5 * (all * (all - 1.0) - rigid * (rigid - 1.0))
-    } else {
-        named
-    };
+fn touching(case: &Case) -> f64 {
     let pushes = |&[a, b]: &[usize; 2]| case.contact_between(a, b).class().is_some();
-    let near = close_pairs(case).iter().filter(|pair| pushes(pair)).count() as f64;
-    let own = if case.self_contact.is_some() {
-        all - rigid
-    } else {
-        0.0
-    };
-    [near, pairs - near + own]
+    let pairs = close_pairs(case);
+    pairs.into_iter().filter(pushes).count() as f64
 }
 
 /// Bytes of the readings of gauges.

@@ -1,7 +1,7 @@
 //! Times at which bodies meet, from their initial velocities.
 
 use model::{Body, Case, Vec3};
-use numerics::meetings::{MovingBox, meetings};
+use numerics::meetings::{Meetings, MovingBox};
 use populate::{self, Wanted, search};
 
 /// Bodies closer than this many spacings touch.
@@ -47,19 +47,43 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
     let most = MOST_OF_EACH * indices.len().max(FEW);
     let end = case.run.end_time;
     let untils = [f64::INFINITY, end, end / 16.0, end / 256.0];
+    let meetings = Meetings::new(&boxes);
     let pairs = untils
-        .into_iter()
-        .find_map(|until| meetings(&boxes, until, most));
-    let pairs = pairs.or_else(|| meetings(&boxes, 0.0, usize::MAX));
+        .iter()
+        .find_map(|&until| Some((meetings.pairs(until, most)?, until)));
+    let (pairs, until) = pairs.unwrap_or_else(|| {
+        let pairs = meetings.pairs(0.0, usize::MAX);
+        (pairs.unwrap_or_default(), 0.0)
+    });
     let ends: Vec<Option<Ends>> = indices
         .iter()
         .map(|&index| populate::bounds(&case.bodies[index], case.dimension))
         .collect();
     let of_pair = |places: [usize; 2]| {
         let bodies = places.map(|place| indices[place]);
-        approach(case, [ends[places[0]]?, ends[places[1]]?], bodies)
+        let boxes = [ends[places[0]]?, ends[places[1]]?];
+        may_meet(case, boxes, bodies, until).then_some(())?;
+        approach(case, boxes, bodies)
     };
-    pairs.into_iter().flatten().filter_map(of_pair).collect()
+    pairs.into_iter().filter_map(of_pair).collect()
+}
+
+/// False of two bodies whose shapes keep them from touching each other until a time (s), by the boxes of their particles.
+fn may_meet(case: &Case, boxes: [Ends; 2], bodies: [usize; 2], until: f64) -> bool {
+    if until.is_infinite() {
+        return true;
+    }
+    let [first, second] = bodies.map(|body| &case.bodies[body]);
+    let way = (first.velocity - second.velocity).norm() * until;
+    let directions = [(first, second, &boxes[0]), (second, first, &boxes[1])];
+    directions
+        .into_iter()
+        .all(|(body, target, (lower, upper))| {
+            let lattice = &body.lattice;
+            let widest = 0.5 * lattice.coarsest();
+            let least = target.shape.least_distance(lower, upper, case.dimension) - widest;
+            least <= way + TOUCH * lattice.spacing
+        })
 }
 
 /// Returns true if a body has one velocity, which nothing but other bodies changes.

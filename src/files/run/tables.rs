@@ -218,6 +218,9 @@ impl Tables {
         self.write_history(case, told(&self.history))?;
         let pairs = simulation.contact().active_pairs();
         for (bodies, pair) in pairs.iter().zip(&told(&self.contacts).pairs) {
+            if !pair.has_met() {
+                continue;
+            }
             let names = bodies.map(|b| case.bodies[b].name.as_str());
             self.contacts.row(&contact(state.time, names, pair))?;
         }

@@ -115,28 +115,32 @@ fn draw(
         .max(1);
     let parts = slabs.par_iter().with_min_len(least);
     // same bits in any order: the nearest
-    parts.fold(blank, add).reduce(blank, merge)
+    let mut images = parts.fold(blank, add).reduce(blank, merge);
+    images.iter_mut().for_each(Image::close);
+    images
 }
 
 /// All particles as each panel shows them.
 pub fn views(case: &Case, panels: &[Panel], particles: f64) -> Vec<Image> {
-    views_of(case, panels, particles, |_| true)
+    views_of(case, panels, particles, |_, _| true)
 }
 
-/// Particles of some bodies as each panel shows them.
+/// Particles of bodies and sizes (m) that `shows` chooses as each panel shows them.
 fn views_of(
     case: &Case,
     panels: &[Panel],
     particles: f64,
-    shows: impl Fn(&Body) -> bool,
+    shows: impl Fn(&Body, f64) -> bool + Sync,
 ) -> Vec<Image> {
     let bodies = case.bodies.iter().enumerate();
-    let bodies = bodies.filter(|(_, body)| shows(body));
+    let bodies = bodies.filter(|(_, body)| shows(body, 0.0));
     let layers = bodies.filter_map(|(index, body)| Layers::new(index, body, case, particles));
     let layers: Vec<Layers> = layers.collect();
     let slabs: Vec<_> = layers.iter().flat_map(Layers::slabs).collect();
     let every = layers.first().map_or(1, |layers| layers.every);
-    draw(case, panels, &slabs, every as f64, |_, _, _| true)
+    draw(case, panels, &slabs, every as f64, |body, _, size| {
+        shows(body, size)
+    })
 }
 
 /// Half the thickness of a section (spacings): particles without order are not in layers, and a
@@ -149,9 +153,10 @@ fn half_thickness(body: &Body) -> f64 {
     }
 }
 
-/// True if the particles of a body are so large that a section shows the matter which they fill.
-fn is_filled(case: &Case, body: &Body, panel: &Panel) -> bool {
-    case.dimension > 1 && !Image::is_small(panel, body.lattice.spacing)
+/// True if particles of a body, of a size (m), are so large that a section shows the matter which they fill.
+fn is_filled(case: &Case, body: &Body, size: f64, panel: &Panel) -> bool {
+    let size = size.clamp(body.lattice.spacing, body.lattice.coarsest());
+    case.dimension > 1 && !Image::is_small(panel, size)
 }
 
 /// The matter at a panel's plane, or of a flat model of so many particles all of it.
@@ -159,7 +164,7 @@ pub fn section(case: &Case, panel: &Panel, particles: f64) -> Image {
     let mut image = if case.dimension == 3 {
         layer(case, panel)
     } else {
-        let shows = |body: &Body| !is_filled(case, body, panel);
+        let shows = |body: &Body, size: f64| !is_filled(case, body, size, panel);
         views_of(case, &[*panel], particles, shows).remove(0)
     };
     let cells = cells(case, panel);
@@ -179,14 +184,14 @@ pub fn section(case: &Case, panel: &Panel, particles: f64) -> Image {
     image
 }
 
-/// The particles of bodies that are filled which reach a panel's plane, with their images, body by body.
+/// The particles that are filled which reach a panel's plane, with their images, body by body.
 fn cells(case: &Case, panel: &Panel) -> Vec<Cell> {
     let (axis, position) = (panel.plane.axis.index(), panel.plane.position);
     let mirrors = Mirrors::new(case.symmetry.clone(), &Drawn::Body);
     let [right, up] = panel.axes();
     let (mut cells, mut images) = (Vec::new(), Vec::new());
     for (index, body) in case.bodies.iter().enumerate() {
-        if !is_filled(case, body, panel) {
+        if !is_filled(case, body, f64::INFINITY, panel) {
             continue;
         }
         let reach = Shape::dense(body.lattice.coarsest(), case.dimension).reach(axis);
@@ -194,6 +199,9 @@ fn cells(case: &Case, panel: &Panel) -> Vec<Cell> {
         let slab = (case.dimension == 3).then_some(slab);
         for site in populate::sites(body, case.dimension, &case.symmetry, slab) {
             let size = body.lattice.spacing * edge(site.share, case.dimension);
+            if !is_filled(case, body, size, panel) {
+                continue;
+            }
             let shape = Shape::dense(size, case.dimension);
             mirrors.reflect(&site.position, &shape, &mut images);
             cells.extend(images.iter().map(|image| Cell {
@@ -208,7 +216,7 @@ fn cells(case: &Case, panel: &Panel) -> Vec<Cell> {
     cells
 }
 
-/// The particles of bodies that are not filled within half a spacing of a panel's plane; at a symmetry plane those next
+/// The particles that are not filled within half a spacing of a panel's plane; at a symmetry plane those next
 /// to it.
 fn layer(case: &Case, panel: &Panel) -> Image {
     let axis = panel.plane.axis.index();
@@ -225,12 +233,15 @@ fn layer(case: &Case, panel: &Panel) -> Image {
         Brick::slab(axis, lower - nudge, lower + 2.0 * reach - nudge)
     };
     let bodies = case.bodies.iter().enumerate();
-    let bodies = bodies.filter(|(_, body)| !is_filled(case, body, panel));
+    let bodies = bodies.filter(|(_, body)| !is_filled(case, body, 0.0, panel));
     let slabs: Vec<_> = bodies.map(|(index, body)| (index, slab(body))).collect();
     // Particles finer than the coarsest are in the section only if they are as near.
     let (plane, widest) = (panel.plane.position, 1.0 + 1e-6);
     let mirrors = || case.symmetry.iter().filter(|m| m.axis == panel.plane.axis);
     let is_in = |body: &Body, x: &[f64; 3], size: f64| {
+        if is_filled(case, body, size, panel) {
+            return false;
+        }
         let on_mirror = mirrors().any(|m| (m.position - plane).abs() < 0.01 * size);
         let sides = if on_mirror { 2.0 } else { 1.0 };
         (x[axis] - plane).abs() <= widest * sides * half_thickness(body) * size

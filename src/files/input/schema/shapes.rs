@@ -58,9 +58,13 @@ tables! {
         /// Centre.
         centre: Option<Point> => "the origin";
         /// Radius.
-        radius: Spanned<Extent>;
+        radius: Option<Spanned<Extent>>;
+        /// Diameter, in place of the radius.
+        diameter: Option<Spanned<Extent>>;
         /// Radius of a hole in the middle.
         inner_radius: Option<Spanned<Extent>> => "none";
+        /// Diameter of that hole, in place of its radius.
+        inner_diameter: Option<Spanned<Extent>> => "none";
     }
 
     /// `shape.cylinder`
@@ -70,9 +74,13 @@ tables! {
         /// Direction of the axis.
         axis: Option<Spanned<AxisParams>> => "z";
         /// Radius.
-        radius: Spanned<Extent>;
+        radius: Option<Spanned<Extent>>;
+        /// Diameter, in place of the radius.
+        diameter: Option<Spanned<Extent>>;
         /// Radius of the bore of a tube.
         inner_radius: Option<Spanned<Extent>> => "none";
+        /// Diameter of the bore, in place of its radius.
+        inner_diameter: Option<Spanned<Extent>> => "none";
         /// Length along the axis.
         length: Spanned<Extent>;
     }
@@ -92,9 +100,13 @@ tables! {
         /// From the base to the top.
         axis: Option<Spanned<AxisParams>> => "z";
         /// Radius of the base.
-        radius: Spanned<Extent>;
+        radius: Option<Spanned<Extent>>;
+        /// Diameter of the base, in place of its radius.
+        diameter: Option<Spanned<Extent>>;
         /// Radius of the top of a frustum.
         top_radius: Option<Spanned<Extent>> => "zero";
+        /// Diameter of that top, in place of its radius.
+        top_diameter: Option<Spanned<Extent>> => "zero";
         /// Length along the axis.
         length: Spanned<Extent>;
     }
@@ -106,7 +118,9 @@ tables! {
         /// Where the tip points.
         axis: Option<Spanned<AxisParams>> => "z";
         /// Radius of the shank.
-        radius: Spanned<Extent>;
+        radius: Option<Spanned<Extent>>;
+        /// Diameter of the shank, in place of its radius.
+        diameter: Option<Spanned<Extent>>;
         /// Length of the nose.
         nose: Spanned<Extent>;
         /// Whole length.
@@ -120,9 +134,13 @@ tables! {
         /// Axis of the ring.
         axis: Option<Spanned<AxisParams>> => "z";
         /// From the axis to the middle of the section.
-        radius: Spanned<Extent>;
+        radius: Option<Spanned<Extent>>;
+        /// Twice that, in place of it.
+        diameter: Option<Spanned<Extent>>;
         /// Radius of the section.
-        tube_radius: Spanned<Extent>;
+        tube_radius: Option<Spanned<Extent>>;
+        /// Diameter of the section, in place of its radius.
+        tube_diameter: Option<Spanned<Extent>>;
     }
 
     /// `shape.prism`

@@ -72,7 +72,9 @@ tables! {
         /// Centre.
         centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
         /// Radius.
-        radius: Placed<Length>, Positive;
+        radius: Option<Placed<Length>>, Positive;
+        /// Diameter, in place of the radius.
+        diameter: Option<Placed<Length>>, Positive;
     }
 
     /// `shape.cylinder` of a surface.
@@ -82,7 +84,9 @@ tables! {
         /// Direction of the axis.
         axis: Option<Spanned<Axis>> => "z";
         /// Radius.
-        radius: Placed<Length>, Positive;
+        radius: Option<Placed<Length>>, Positive;
+        /// Diameter, in place of the radius.
+        diameter: Option<Placed<Length>>, Positive;
         /// Length along the axis.
         length: Option<Placed<Length>>, Positive => "without ends";
     }

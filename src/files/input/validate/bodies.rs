@@ -233,7 +233,10 @@ impl Reader<'_> {
     /// The initial velocity, the motion of a rigid body, and the components of a velocity that varies.
     fn motion(&self, params: &BodyParams) -> Result<Moves, Diagnostic> {
         let given = params.velocity.as_ref();
-        let (velocity, varied) = initial::velocity(given, self.dimension)?;
+        let (velocity, varied) = match initial::oblique(params, self.dimension)? {
+            Some(velocity) => (velocity, None),
+            None => initial::velocity(given, self.dimension)?,
+        };
         let rigid = params.rigid == Some(true);
         if let Some(given) = given.filter(|_| rigid && varied.is_some()) {
             let title = "a rigid body has one velocity: its `velocity` cannot vary";
@@ -243,7 +246,7 @@ impl Reader<'_> {
             let motion = rigid.then(|| Motion::constant(velocity.into()));
             return Ok((velocity, motion, varied));
         };
-        if !rigid || params.velocity.is_some() {
+        if !rigid || params.velocity.is_some() || params.speed.is_some() {
             let title = if rigid {
                 "a rigid body has a `velocity` or a `motion`, not both"
             } else {

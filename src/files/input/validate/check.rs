@@ -120,6 +120,20 @@ pub fn required<T>(found: Option<T>, key: &str, table: &Range<usize>) -> Result<
     })
 }
 
+/// A radius, or half of the diameter in its place, by their keys; nothing of neither.
+pub fn radius(
+    [radius, diameter]: [Option<f64>; 2],
+    keys: [&str; 2],
+    table: &Range<usize>,
+) -> Result<Option<f64>, Diagnostic> {
+    if radius.is_some() && diameter.is_some() {
+        let [radius, diameter] = keys;
+        let title = format!("`{radius}` and `{diameter}` cannot both be given");
+        return Err(Diagnostic::new(table.clone(), title));
+    }
+    Ok(radius.or(diameter.map(|diameter| 0.5 * diameter)))
+}
+
 /// A vector must have a component for each dimension.
 pub fn components<T>(
     key: &str,

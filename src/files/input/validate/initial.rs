@@ -1,5 +1,6 @@
 //! Initial values of the particles of bodies: constants or formulas of the place.
 
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
 use toml::Spanned;
@@ -36,6 +37,40 @@ pub fn velocity(
         [Some(x), Some(y), Some(z)] => Ok((Vec3::new(x, y, z), None)),
         _ => Ok((Vec3::zeros(), Some(profiles))),
     }
+}
+
+/// The velocity (m/s) of a `speed` at an obliquity, if there is one.
+pub fn oblique(params: &BodyParams, dimension: usize) -> Result<Option<Vec3>, Diagnostic> {
+    let refuse = |at: Range<usize>, title: &str| Err(Diagnostic::new(at, title));
+    let Some(given) = &params.speed else {
+        return match &params.angle {
+            Some(angle) => refuse(
+                angle.span(),
+                "`angle` is that of a `speed`, which the body does not have",
+            ),
+            None => Ok(None),
+        };
+    };
+    let (speed, angle) = (params.speed()?.unwrap_or(0.0), params.angle()?);
+    if params.velocity.is_some() {
+        return refuse(
+            given.span(),
+            "a body has a `velocity` or a `speed`, not both",
+        );
+    }
+    if let Some(given) = &params.angle {
+        if dimension == 1 {
+            return refuse(given.span(), "in one dimension a `speed` has no `angle`");
+        }
+        if angle.abs() >= FRAC_PI_2 {
+            let title = "`angle`, which counts from the normal, must be less than 90 deg";
+            return refuse(given.span(), title);
+        }
+    }
+    let mut velocity = Vec3::zeros();
+    velocity.x = speed * libm::sin(angle);
+    velocity[dimension - 1] = 0.0 - speed * libm::cos(angle);
+    Ok(Some(velocity))
 }
 
 /// Initial values beside the velocity, whose components these are where they vary.
@@ -217,7 +252,10 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
 pub fn key_span(table: &Spanned<BodyParams>, key: &str) -> Range<usize> {
     let params = table.get_ref();
     let span = match key {
-        "velocity" => params.velocity.as_ref().map(Spanned::span),
+        "velocity" => {
+            let speed = params.speed.as_ref().map(Spanned::span);
+            params.velocity.as_ref().map(Spanned::span).or(speed)
+        }
         "temperature" => params.temperature.as_ref().map(Spanned::span),
         "specific_energy" => params.specific_energy.as_ref().map(Spanned::span),
         _ => params.plastic_strain.as_ref().map(Spanned::span),

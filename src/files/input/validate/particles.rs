@@ -144,7 +144,8 @@ impl Files<'_> {
     /// Drops what the body says itself, and all state of a rigid one.
     fn forget(&self, body: &BodyParams, rows: &mut Table) {
         let is_rigid = body.rigid == Some(true);
-        let moves = body.velocity.is_some() || body.angular_velocity.is_some();
+        let moves =
+            body.velocity.is_some() || body.speed.is_some() || body.angular_velocity.is_some();
         let is_heated = body.temperature.is_some() || body.specific_energy.is_some();
         rows.columns.retain(|(quantity, _)| match quantity {
             Quantity::Position | Quantity::Volume => true,

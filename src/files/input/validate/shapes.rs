@@ -1,9 +1,11 @@
 //! Shapes in metres.
 
+use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
 
+use super::check::{radius, required};
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{
     AxisParams, BoxParams, CylinderParams, Point, ShapeParams, SphereParams,
@@ -19,6 +21,9 @@ pub struct Shapes<'a> {
     /// Folder of the files that the case names.
     pub folder: &'a Path,
 }
+
+/// A radius as it is typed, and the diameter that may stand in its place.
+type Typed<'a> = [&'a Option<Spanned<Extent>>; 2];
 
 /// A vector with the wrong number of components.
 fn wrong_length<T>(key: &str, vector: &Spanned<Vec<T>>, dimension: usize) -> Diagnostic {
@@ -197,8 +202,9 @@ impl Shapes<'_> {
     fn sphere(&self, table: &Spanned<SphereParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let radius = self.positive(&params.radius, "radius")?;
-        let Some(inner_radius) = self.bore(params.inner_radius.as_ref(), radius)? else {
+        let radius = self.outer_radius([&params.radius, &params.diameter], &table.span())?;
+        let inner = [&params.inner_radius, &params.inner_diameter];
+        let Some(inner_radius) = self.bore(inner, radius, &table.span())? else {
             return Ok(Shape::Sphere { centre, radius });
         };
         Ok(Shape::Shell {
@@ -211,26 +217,54 @@ impl Shapes<'_> {
     /// The radius of a hole, smaller than that of what it is in.
     fn bore(
         &self,
-        inner: Option<&Spanned<Extent>>,
+        inner: Typed<'_>,
         radius: f64,
+        table: &Range<usize>,
     ) -> Result<Option<f64>, Diagnostic> {
-        let Some(inner) = inner else {
-            return Ok(None);
-        };
-        let inner_radius = self.positive(inner, "inner_radius")?;
-        if inner_radius < radius {
-            return Ok(Some(inner_radius));
+        let inner_radius = self.radius(inner, ["inner_radius", "inner_diameter"], table)?;
+        if inner_radius.is_none_or(|inner| inner < radius) {
+            return Ok(inner_radius);
         }
         let title = "`inner_radius` must be smaller than `radius`";
-        Err(Diagnostic::new(inner.span(), title))
+        let at = inner[0].as_ref().or(inner[1].as_ref());
+        Err(Diagnostic::new(
+            at.map_or(table.clone(), Spanned::span),
+            title,
+        ))
+    }
+
+    /// The radius of a shape, which must have one.
+    pub(super) fn outer_radius(
+        &self,
+        typed: Typed<'_>,
+        table: &Range<usize>,
+    ) -> Result<f64, Diagnostic> {
+        let radius = self.radius(typed, ["radius", "diameter"], table)?;
+        required(radius, "radius", table).map_err(|error| error.help("or give a `diameter`"))
+    }
+
+    /// A radius (m) of two keys.
+    pub(super) fn radius(
+        &self,
+        typed: Typed<'_>,
+        keys: [&str; 2],
+        table: &Range<usize>,
+    ) -> Result<Option<f64>, Diagnostic> {
+        let mut values = [None; 2];
+        for ((value, typed), key) in values.iter_mut().zip(typed).zip(keys) {
+            let typed = typed.as_ref();
+            *value = typed.map(|typed| self.positive(typed, key)).transpose()?;
+        }
+        radius(values, keys, table)
     }
 
     fn cylinder(&self, table: &Spanned<CylinderParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let radius = self.positive(&params.radius, "radius")?;
+        let radius = self.outer_radius([&params.radius, &params.diameter], &table.span())?;
         let length = self.positive(&params.length, "length")?;
-        let bore = self.bore(params.inner_radius.as_ref(), radius)?;
+        let inner = [&params.inner_radius, &params.inner_diameter];
+        let bore = self.bore(inner, radius, &table.span())?;
         let axis = axis_vector(params.axis.as_ref())?;
         let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
         if let (None, Some(axis)) = (bore, along) {

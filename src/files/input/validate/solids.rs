@@ -2,6 +2,7 @@
 
 use toml::Spanned;
 
+use super::check::required;
 use super::meshes::MeshReader;
 use super::shapes::{Shapes, axis_vector, placed};
 use crate::input::schema::{
@@ -38,16 +39,13 @@ impl Shapes<'_> {
     pub(super) fn cone(&self, table: &Spanned<ConeParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let radius = self.positive(&params.radius, "radius")?;
+        let radius = self.outer_radius([&params.radius, &params.diameter], &table.span())?;
         let half = 0.5 * self.positive(&params.length, "length")?;
         let mut outline = vec![[0.0, -half], [radius, -half]];
-        match &params.top_radius {
-            None => outline.push([0.0, half]),
-            Some(top) => {
-                outline.push([self.positive(top, "top_radius")?, half]);
-                outline.push([0.0, half]);
-            }
-        }
+        let top = [&params.top_radius, &params.top_diameter];
+        let top = self.radius(top, ["top_radius", "top_diameter"], &table.span())?;
+        outline.extend(top.map(|top| [top, half]));
+        outline.push([0.0, half]);
         let profile = Polygon::new(outline).expect("a triangle or a trapezium");
         let axis = axis_vector(params.axis.as_ref())?;
         Ok(placed(Primitive::Revolved(profile), &axis, centre))
@@ -56,7 +54,7 @@ impl Shapes<'_> {
     pub(super) fn ogive(&self, table: &Spanned<OgiveParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let radius = self.positive(&params.radius, "radius")?;
+        let radius = self.outer_radius([&params.radius, &params.diameter], &table.span())?;
         let nose = self.positive(&params.nose, "nose")?;
         let length = self.positive(&params.length, "length")?;
         if nose < radius {
@@ -83,11 +81,13 @@ impl Shapes<'_> {
 
     pub(super) fn torus(&self, table: &Spanned<TorusParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
-        let radius = self.positive(&params.radius, "radius")?;
-        let tube = self.positive(&params.tube_radius, "tube_radius")?;
+        let radius = self.outer_radius([&params.radius, &params.diameter], &table.span())?;
+        let tube = [&params.tube_radius, &params.tube_diameter];
+        let tube = self.radius(tube, ["tube_radius", "tube_diameter"], &table.span())?;
+        let tube = required(tube, "tube_radius", &table.span())?;
         if tube >= radius {
             let title = "`tube_radius` must be smaller than `radius`";
-            return Err(Diagnostic::new(params.tube_radius.span(), title));
+            return Err(Diagnostic::new(table.span(), title));
         }
         let centre = self.point(params.centre.as_ref(), "centre")?;
         let axis = axis_vector(params.axis.as_ref())?;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::axis;
+use super::check::{radius, required};
 use super::loads::{Reader, given_name};
 use super::meshes::MeshReader;
 use super::motion::{motion, rate};
@@ -20,6 +21,12 @@ use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
 use model::{Axis, Motion, Resistance, RigidSurface, Spin, SurfaceShape};
 use populate;
+
+/// The radius of a surface (m), which must have one, or half its diameter.
+fn surface_radius(typed: [Option<f64>; 2], table: &Range<usize>) -> Result<f64, Diagnostic> {
+    let radius = radius(typed, ["radius", "diameter"], table)?;
+    required(radius, "radius", table).map_err(|error| error.help("or give a `diameter`"))
+}
 
 /// A place as it is typed.
 type Place = Spanned<Vec<Placed<Length>>>;
@@ -162,11 +169,11 @@ impl Reader<'_> {
         match (sphere, cylinder, stl, obj) {
             (Some(params), None, None, None) => {
                 needs(2, "sphere")?;
-                self.sphere(params)
+                self.sphere(params, &table.span())
             }
             (None, Some(params), None, None) => {
                 needs(3, "cylinder")?;
-                self.cylinder(params)
+                self.cylinder(params, &table.span())
             }
             (None, None, Some(params), None) => mesh(params, Format::Stl),
             (None, None, None, Some(params)) => mesh(params, Format::Obj),
@@ -177,18 +184,28 @@ impl Reader<'_> {
         }
     }
 
-    fn sphere(&self, params: &SurfaceSphereParams) -> Result<SurfaceShape, Diagnostic> {
+    fn sphere(
+        &self,
+        params: &SurfaceSphereParams,
+        table: &Range<usize>,
+    ) -> Result<SurfaceShape, Diagnostic> {
+        let typed = [params.radius()?, params.diameter()?];
         Ok(SurfaceShape::Sphere {
             centre: self.place("centre", params.centre.as_ref())?,
-            radius: params.radius()?,
+            radius: surface_radius(typed, table)?,
         })
     }
 
-    fn cylinder(&self, params: &SurfaceCylinderParams) -> Result<SurfaceShape, Diagnostic> {
+    fn cylinder(
+        &self,
+        params: &SurfaceCylinderParams,
+        table: &Range<usize>,
+    ) -> Result<SurfaceShape, Diagnostic> {
+        let typed = [params.radius()?, params.diameter()?];
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
             axis: unit(params.axis.as_ref().map_or(Axis::Z, |axis| *axis.get_ref())),
-            radius: params.radius()?,
+            radius: surface_radius(typed, table)?,
             half_length: 0.5 * params.length()?.unwrap_or(f64::INFINITY),
         })
     }
