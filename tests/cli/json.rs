@@ -12,6 +12,28 @@ fn document(arguments: &[&str]) -> Value {
     serde_json::from_str(&ended.stdout).unwrap_or_else(|e| panic!("{e}: {ended:#?}"))
 }
 
+fn fragments_and_debris(run: &str) {
+    let fragments = document(&["fragments", run, "--include", "all"]);
+    let count = fragments["fragments"].as_u64().unwrap();
+    // Images behind planes of symmetry are fragments too, and share a row.
+    let copies = fragments["rows"].as_array().unwrap().iter();
+    let copies = copies.map(|row| row["copies"].as_u64().unwrap());
+    assert_eq!(copies.sum::<u64>(), count);
+    assert!(fragments["total_mass"].as_f64().unwrap() > 0.0);
+    // What is of no body's largest piece, with all that failed.
+    let fragments = document(&["fragments", run]);
+    let debris = fragments["debris"].as_array().unwrap().iter();
+    let of = |one: &Value, key: &str| one[key].as_f64().unwrap();
+    let failed: f64 = debris.clone().map(|one| of(one, "failed")).sum();
+    assert!(
+        (failed - of(&fragments["failed"], "mass")).abs() <= 1e-9 * of(&fragments, "total_mass")
+    );
+    for one in debris {
+        assert!(of(one, "mass") * (1.0 + 1e-9) >= of(one, "failed") + of(one, "in_fragments"));
+        assert!(one["body"].is_string() && of(one, "share") <= 1.0);
+    }
+}
+
 #[test]
 fn answers_are_documents_in_si_units() {
     let place = tempfile::tempdir().unwrap();
@@ -63,25 +85,7 @@ fn answers_are_documents_in_si_units() {
     );
     assert_eq!(measured["units"]["time"], "s");
 
-    let fragments = document(&["fragments", run, "--include", "all"]);
-    let count = fragments["fragments"].as_u64().unwrap();
-    // Images behind planes of symmetry are fragments too, and share a row.
-    let copies = fragments["rows"].as_array().unwrap().iter();
-    let copies = copies.map(|row| row["copies"].as_u64().unwrap());
-    assert_eq!(copies.sum::<u64>(), count);
-    assert!(fragments["total_mass"].as_f64().unwrap() > 0.0);
-    // What is of no body's largest piece, with all that failed.
-    let fragments = document(&["fragments", run]);
-    let debris = fragments["debris"].as_array().unwrap().iter();
-    let of = |one: &Value, key: &str| one[key].as_f64().unwrap();
-    let failed: f64 = debris.clone().map(|one| of(one, "failed")).sum();
-    assert!(
-        (failed - of(&fragments["failed"], "mass")).abs() <= 1e-9 * of(&fragments, "total_mass")
-    );
-    for one in debris {
-        assert!(of(one, "mass") * (1.0 + 1e-9) >= of(one, "failed") + of(one, "in_fragments"));
-        assert!(one["body"].is_string() && of(one, "share") <= 1.0);
-    }
+    fragments_and_debris(run);
 
     let same = document(&["compare", run, run]);
     assert_eq!(same["agrees"], true);

@@ -52,7 +52,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D)
   measures: plate, plate-debris
   about 63 steps to 0.2 us
   about 0.2 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
-  about 10 MB on the disk at the end
+  about 11 MB on the disk at the end
 can run, with 1 warning
 ";
     assert_eq!(said, expected);

@@ -97,7 +97,9 @@ pub fn draw_history(args: &PlotArgs, history: History) -> Result<(), PlotError> 
         .into_iter()
         .map(|(name, source)| (name, table(source, history.table())));
     let tables: Vec<_> = tables.collect();
-    tables.iter().for_each(|(_, path)| warn_of_part(path));
+    for (_, path) in &tables {
+        warn_of_part(path);
+    }
     let chart = history.chart(&tables, &title_of(&args.source))?;
     let stem = match history {
         History::Energies => "history".to_owned(),

@@ -36,7 +36,7 @@ pub fn whole_state(state: &RunState, whole: Whole) -> RunState {
             .collect(),
         departed_contact_energy: whole.sum(state.departed_contact_energy),
         passed: (state.passed.iter())
-            .map(|part| whole_passed(part, &whole))
+            .map(|part| whole_passed(part, whole))
             .collect(),
         worst: Worst {
             interpenetrated: count(worst.interpenetrated),

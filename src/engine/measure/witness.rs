@@ -232,7 +232,7 @@ impl Witnesses {
 
 /// A ledger with what the images behind symmetry planes let pass.
 #[must_use]
-pub fn whole_passed(part: &Passed, whole: &Whole) -> Passed {
+pub(crate) fn whole_passed(part: &Passed, whole: Whole) -> Passed {
     Passed {
         particles: part.particles * u64::from(whole.copies()),
         mass: whole.sum(part.mass),

@@ -211,9 +211,8 @@ impl Tables {
     ) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
         let whole = measurements::whole(simulation);
-        let told = |table: &Table| match table.is_of_whole() {
-            true => &whole,
-            false => state,
+        let told = |table: &Table| {
+            if table.is_of_whole() { &whole } else { state }
         };
         self.write_history(case, told(&self.history))?;
         let pairs = simulation.contact().active_pairs();

@@ -42,16 +42,17 @@ pub fn velocity(
 /// The velocity (m/s) of a `speed` at an obliquity, if there is one.
 pub fn oblique(params: &BodyParams, dimension: usize) -> Result<Option<Vec3>, Diagnostic> {
     let refuse = |at: Range<usize>, title: &str| Err(Diagnostic::new(at, title));
+    let angle = params.angle()?;
     let Some(given) = &params.speed else {
         return match &params.angle {
-            Some(angle) => refuse(
-                angle.span(),
+            Some(given) if angle != 0.0 => refuse(
+                given.span(),
                 "`angle` is that of a `speed`, which the body does not have",
             ),
-            None => Ok(None),
+            _ => Ok(None),
         };
     };
-    let (speed, angle) = (params.speed()?.unwrap_or(0.0), params.angle()?);
+    let speed = params.speed()?.unwrap_or(0.0);
     if params.velocity.is_some() {
         return refuse(
             given.span(),
