@@ -325,11 +325,8 @@ fn run_folder(folder: &RunFolder, text: &mut Text) -> Result<(), ResultsError> {
         let what = "until the next checkpoint: what came after the one restarted from";
         text.entry("set aside", format!("{} ({what})", path.display()));
     }
-    let stems = ["history", "contacts", "loads", "removed", "departed"];
-    for name in stems.map(|stem| format!("{stem}.csv")) {
-        if let Some(note) = folder.note_of_part(&name) {
-            text.both(&format!("note on {name}"), note);
-        }
+    for (name, note) in folder.notes_of_part() {
+        text.both(&format!("note on {name}"), note);
     }
     let figures = measures::last_figures(folder);
     if !figures.is_empty() {

@@ -41,25 +41,22 @@ impl Debris {
 
 /// The body that a fragment is mostly of.
 pub fn main_body(fragment: &Fragment) -> usize {
-    let bodies = fragment.mass_of.iter().enumerate();
-    // The first of equals.
-    let most = bodies.rev().max_by(|(_, a), (_, b)| a.total_cmp(b));
-    most.map_or(0, |(body, _)| body)
+    most(fragment.mass_of.iter().copied()).map_or(0, |(body, _)| body)
+}
+
+/// The largest of some masses and its place, the first of equals.
+fn most(masses: impl ExactSizeIterator<Item = f64> + DoubleEndedIterator) -> Option<(usize, f64)> {
+    let all = masses.enumerate().rev();
+    all.max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
 /// True of each fragment that is the largest piece of a body.
 pub fn largest_pieces(census: &Census, bodies: usize) -> Vec<bool> {
     let mut is_largest = vec![false; census.fragments.len()];
     for body in 0..bodies {
-        let own = census
-            .fragments
-            .iter()
-            .map(|fragment| fragment.mass_of[body]);
-        let most = own
-            .enumerate()
-            .rev()
-            .max_by(|(_, a), (_, b)| a.total_cmp(b));
-        if let Some((place, _)) = most.filter(|(_, mass)| *mass > 0.0) {
+        let all = census.fragments.iter();
+        let own = most(all.map(|fragment| fragment.mass_of[body]));
+        if let Some((place, _)) = own.filter(|(_, mass)| *mass > 0.0) {
             is_largest[place] = true;
         }
     }

@@ -1,8 +1,8 @@
 //! The sums and ledgers of a run as tables and the summary report them: of the whole model.
 
-use super::{Whole, whole_passed};
+use super::Whole;
 use crate::contact::PairExtremes;
-use crate::diagnose::{LoadState, PairState, Removed, RunState, Totals, Worst};
+use crate::diagnose::{LoadState, PairState, Passed, Removed, RunState, Totals, Worst};
 
 /// A state with all sums and ledgers that are reported brought to the whole model; what a step reads stays that of what is
 /// computed.
@@ -36,7 +36,7 @@ pub fn whole_state(state: &RunState, whole: Whole) -> RunState {
             .collect(),
         departed_contact_energy: whole.sum(state.departed_contact_energy),
         passed: (state.passed.iter())
-            .map(|part| whole_passed(part, whole))
+            .map(|part| passed(part, whole))
             .collect(),
         worst: Worst {
             interpenetrated: count(worst.interpenetrated),
@@ -100,5 +100,15 @@ fn gone(part: &Removed, whole: Whole) -> Removed {
         angular_momentum: whole.angular_momentum(part.angular_momentum, part.momentum),
         mass_time: whole.sum(part.mass_time),
         times: part.times,
+    }
+}
+
+fn passed(part: &Passed, whole: Whole) -> Passed {
+    Passed {
+        particles: whole.count(part.particles),
+        mass: whole.sum(part.mass),
+        momentum: whole.momentum(part.momentum),
+        kinetic_energy: whole.sum(part.kinetic_energy),
+        internal_energy: whole.sum(part.internal_energy),
     }
 }

@@ -41,5 +41,4 @@ pub use ledgers::whole_state;
 pub use matter::{Matter, mirrors};
 pub use reading::Reading;
 pub use whole::Whole;
-pub(crate) use witness::whole_passed;
 pub use witness::{Crossing, Witnesses};

@@ -6,7 +6,6 @@
 //! it is joined in the order of steps, planes and ids and added to the ledgers one by one, so that
 //! they have the same bits for any ranks and restarts.
 
-use super::Whole;
 use crate::diagnose::{Passed, RunState};
 use comm::Comm;
 use model::{Case, Witness};
@@ -227,18 +226,6 @@ impl Witnesses {
             }
         }
         joined
-    }
-}
-
-/// A ledger with what the images behind symmetry planes let pass.
-#[must_use]
-pub(crate) fn whole_passed(part: &Passed, whole: Whole) -> Passed {
-    Passed {
-        particles: part.particles * u64::from(whole.copies()),
-        mass: whole.sum(part.mass),
-        momentum: whole.momentum(part.momentum),
-        kinetic_energy: whole.sum(part.kinetic_energy),
-        internal_energy: whole.sum(part.internal_energy),
     }
 }
 

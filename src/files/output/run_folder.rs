@@ -49,6 +49,13 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
+    /// [`Self::note_of_part`] of all tables that have one, with their names.
+    pub fn notes_of_part(&self) -> impl Iterator<Item = (&'static str, String)> {
+        OF_WHOLE
+            .into_iter()
+            .filter_map(|name| Some((name, self.note_of_part(name)?)))
+    }
+
     /// What to say of a table of sums that an earlier version began for a model with symmetry planes: it is of the
     /// part that was computed. By one process.
     #[must_use]

@@ -318,14 +318,19 @@ impl<'a> Driver<'a> {
             Vec::new()
         };
         let wall = self.start.elapsed().as_secs_f64();
-        if comm.is_root() {
-            self.watched
-                .row(&measurements::whole(&self.simulation), &load);
+        let whole = comm
+            .is_root()
+            .then(|| measurements::whole(&self.simulation));
+        if let Some(whole) = &whole {
+            self.watched.row(whole, &load);
         }
-        self.folder.on_root(comm, || match &mut self.tables {
-            Some(tables) => tables.write(&self.simulation, &bodies, &load, wall),
-            None => Ok(()),
-        })?;
+        self.folder
+            .on_root(comm, || match (&mut self.tables, &whole) {
+                (Some(tables), Some(whole)) => {
+                    tables.write(&self.simulation, whole, &bodies, &load, wall)
+                }
+                _ => Ok(()),
+            })?;
         self.simulation.state.begin_interval();
         if let Some(text) = self.notices.notice(&self.simulation) {
             self.record(comm, &text);

@@ -205,14 +205,14 @@ impl Tables {
     pub fn write(
         &mut self,
         simulation: &Simulation,
+        whole: &RunState,
         bodies: &[BodyFigures],
         load: &Load,
         wall: f64,
     ) -> Result<(), OutputError> {
         let (case, state) = (&simulation.case, &simulation.state);
-        let whole = measurements::whole(simulation);
         let told = |table: &Table| {
-            if table.is_of_whole() { &whole } else { state }
+            if table.is_of_whole() { whole } else { state }
         };
         self.write_history(case, told(&self.history))?;
         let pairs = simulation.contact().active_pairs();
@@ -245,7 +245,7 @@ impl Tables {
                 table.row(&body_row(state.time, &body.name, figures))?;
             }
         }
-        self.write_passed(case, &whole)?;
+        self.write_passed(case, whole)?;
         let groups = load.by_group();
         self.ranks
             .rows(groups.map(|group| rank_row(state.step, &group)))?;

@@ -74,10 +74,11 @@ impl Table {
         Ok(Self::of(sheet))
     }
 
-    fn of(sheet: Sheet) -> Self {
-        let Sheet {
+    fn of(
+        Sheet {
             names, units, rows, ..
-        } = sheet;
+        }: Sheet,
+    ) -> Self {
         Self { names, units, rows }
     }
 

@@ -7,7 +7,7 @@ use crate::sph::shared::show_images;
 use numerics::lanes::Lanes;
 use particles::Mirrors;
 use particles::neighbours::Lists;
-use particles::{ParticleStore, Scatter};
+use particles::{GRAIN, ParticleStore, Scatter};
 use sums::momentum::StressRecord;
 use sums::step::Side;
 
@@ -58,10 +58,12 @@ pub(super) fn set_viscous_speeds(particles: &mut ParticleStore) {
     } = particles;
     let speeds = viscous_speed.par_iter_mut().zip(sound_speed.par_iter());
     let speeds = speeds.zip(pressure.par_iter()).enumerate();
-    speeds.for_each(|(i, ((speed, &sound), &pressure))| {
-        let damage = damage.get(i).copied().unwrap_or(0.0);
-        *speed = material::viscous_speed(sound, pressure, damage);
-    });
+    speeds
+        .with_min_len(GRAIN)
+        .for_each(|(i, ((speed, &sound), &pressure))| {
+            let damage = damage.get(i).copied().unwrap_or(0.0);
+            *speed = material::viscous_speed(sound, pressure, damage);
+        });
 }
 
 /// Stresses of halo particles and their images, or of the images of this rank's particles.

@@ -134,6 +134,12 @@ pub fn radius(
     Ok(radius.or(diameter.map(|diameter| 0.5 * diameter)))
 }
 
+/// The radius of what must have one, or half of its diameter.
+pub fn outer_radius(typed: [Option<f64>; 2], table: &Range<usize>) -> Result<f64, Diagnostic> {
+    let radius = radius(typed, ["radius", "diameter"], table)?;
+    required(radius, "radius", table).map_err(|error| error.help("or give a `diameter`"))
+}
+
 /// A vector must have a component for each dimension.
 pub fn components<T>(
     key: &str,

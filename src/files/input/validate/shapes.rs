@@ -5,7 +5,7 @@ use std::path::Path;
 
 use toml::Spanned;
 
-use super::check::{radius, required};
+use super::check::{outer_radius, radius};
 use crate::input::quantity::{Extent, Placed};
 use crate::input::schema::{
     AxisParams, BoxParams, CylinderParams, Point, ShapeParams, SphereParams,
@@ -239,8 +239,7 @@ impl Shapes<'_> {
         typed: Typed<'_>,
         table: &Range<usize>,
     ) -> Result<f64, Diagnostic> {
-        let radius = self.radius(typed, ["radius", "diameter"], table)?;
-        required(radius, "radius", table).map_err(|error| error.help("or give a `diameter`"))
+        outer_radius(self.lengths(typed, ["radius", "diameter"])?, table)
     }
 
     /// A radius (m) of two keys.
@@ -250,12 +249,17 @@ impl Shapes<'_> {
         keys: [&str; 2],
         table: &Range<usize>,
     ) -> Result<Option<f64>, Diagnostic> {
+        radius(self.lengths(typed, keys)?, keys, table)
+    }
+
+    /// The lengths (m) of two keys, of those that are typed.
+    fn lengths(&self, typed: Typed<'_>, keys: [&str; 2]) -> Result<[Option<f64>; 2], Diagnostic> {
         let mut values = [None; 2];
         for ((value, typed), key) in values.iter_mut().zip(typed).zip(keys) {
             let typed = typed.as_ref();
             *value = typed.map(|typed| self.positive(typed, key)).transpose()?;
         }
-        radius(values, keys, table)
+        Ok(values)
     }
 
     fn cylinder(&self, table: &Spanned<CylinderParams>) -> Result<Shape, Diagnostic> {

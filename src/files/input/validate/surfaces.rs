@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::axis;
-use super::check::{radius, required};
+use super::check::outer_radius;
 use super::loads::{Reader, given_name};
 use super::meshes::MeshReader;
 use super::motion::{motion, rate};
@@ -21,12 +21,6 @@ use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
 use model::{Axis, Motion, Resistance, RigidSurface, Spin, SurfaceShape};
 use populate;
-
-/// The radius of a surface (m), which must have one, or half its diameter.
-fn surface_radius(typed: [Option<f64>; 2], table: &Range<usize>) -> Result<f64, Diagnostic> {
-    let radius = radius(typed, ["radius", "diameter"], table)?;
-    required(radius, "radius", table).map_err(|error| error.help("or give a `diameter`"))
-}
 
 /// A place as it is typed.
 type Place = Spanned<Vec<Placed<Length>>>;
@@ -192,7 +186,7 @@ impl Reader<'_> {
         let typed = [params.radius()?, params.diameter()?];
         Ok(SurfaceShape::Sphere {
             centre: self.place("centre", params.centre.as_ref())?,
-            radius: surface_radius(typed, table)?,
+            radius: outer_radius(typed, table)?,
         })
     }
 
@@ -205,7 +199,7 @@ impl Reader<'_> {
         Ok(SurfaceShape::Cylinder {
             centre: self.place("centre", params.centre.as_ref())?,
             axis: unit(params.axis.as_ref().map_or(Axis::Z, |axis| *axis.get_ref())),
-            radius: surface_radius(typed, table)?,
+            radius: outer_radius(typed, table)?,
             half_length: 0.5 * params.length()?.unwrap_or(f64::INFINITY),
         })
     }
