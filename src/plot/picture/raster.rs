@@ -27,6 +27,14 @@ pub struct Raster {
     pub seen: Vec<usize>,
 }
 
+/// Fine samples of some rows of pixels, each taken when it is first wanted: pixels at edges share most of theirs.
+struct FineSamples {
+    /// Fine rows above.
+    first: usize,
+    columns: usize,
+    taken: Vec<Option<Option<Sample>>>,
+}
+
 /// A panel while it is drawn.
 struct Panel<'a, C> {
     tiles: Tiles<'a>,
@@ -97,12 +105,17 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
             ys.all(|y| xs.clone().all(|x| middle(x, y).map(|s| s.body) == own))
         };
         let mut pixels = Vec::with_capacity(rows.len() * columns);
+        let mut fine = FineSamples {
+            first: FINE * first,
+            columns: FINE * columns,
+            taken: vec![None; FINE * FINE * (end - first) * columns],
+        };
         for y in rows {
             for x in 0..columns {
                 pixels.push(if even(x, y) {
                     self.colour(middle(x, y))
                 } else {
-                    self.edge(x, y)
+                    self.edge(x, y, &mut fine)
                 });
             }
         }
@@ -110,7 +123,7 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
     }
 
     /// A pixel near the edge of a body, with what is there of the line about it.
-    fn edge(&self, x: usize, y: usize) -> Rgb {
+    fn edge(&self, x: usize, y: usize, fine: &mut FineSamples) -> Rgb {
         let wide = FINE + 2 * self.line;
         let shifted = |k: usize, pixel: usize, count: usize| {
             (FINE * pixel + k)
@@ -120,7 +133,9 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
         let samples: Vec<Option<Sample>> = (0..wide * wide)
             .map(|k| {
                 let column = shifted(k % wide, x, self.size[0]);
-                self.sample(column, shifted(k / wide, y, self.size[1]))
+                let row = shifted(k / wide, y, self.size[1]);
+                let taken = &mut fine.taken[(row - fine.first) * fine.columns + column];
+                *taken.get_or_insert_with(|| self.sample(column, row))
             })
             .collect();
         let mut sum = [0; 3];
