@@ -69,7 +69,7 @@ bench: release ## Time fixed cases on threads and ranks, beside other programs w
 	if [ -x benches/peers/run.sh ]; then $(ENV) benches/peers/run.sh; fi
 
 bench-kernels: deps ## Time the inner loops alone, for each instruction set
-	$(ENV) cargo bench --locked -p whipple-bench
+	$(ENV) cargo bench --locked -p whipple-kernels
 
 docs: deps book ## Build the book (target/book) and the API documentation (target/doc)
 	$(ENV) cargo doc --locked --workspace --no-deps
