@@ -97,7 +97,7 @@ fn momentum_of<R: PairStress>(criterion: &mut Criterion, name: &str, record: R) 
             around,
             stresses: &stresses,
             viscosity,
-            terms: PairTerms::NONE,
+            terms: PairTerms::default(),
         }));
     });
 }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Axis, Cadence, Region};
+use super::{Axis, Cadence, Region, TermOptions};
 
 /// True if the smoothing length of the SPH sums follows the density. Contact always keeps the
 /// reference h₀.
@@ -44,14 +44,8 @@ pub struct SphOptions {
     pub beta: f64,
     /// Constant or variable smoothing length.
     pub smoothing_length: SmoothingLength,
-    /// Factor ε of the artificial stress; 0 for none.
-    pub artificial_stress: f64,
-    /// True if the Balsara switch limits the artificial viscosity.
-    pub balsara: bool,
-    /// Coefficient `α_u` of the artificial conduction; 0 for none.
-    pub conduction: f64,
-    /// Factor ε of XSPH; 0 for none.
-    pub xsph: f64,
+    /// Pair terms.
+    pub terms: TermOptions,
     /// Stiffness ξ of the hourglass control of the corrected form, over the P-wave modulus.
     pub hourglass: f64,
 }

@@ -23,6 +23,7 @@ mod load;
 mod measure;
 mod motion;
 mod numerical_limits;
+mod pair_terms;
 pub mod readable;
 mod region;
 mod shape;
@@ -54,6 +55,7 @@ pub use measure::{
 };
 pub use motion::Motion;
 pub use numerical_limits::{NumericalFailurePolicy, NumericalLimits};
+pub use pair_terms::TermOptions;
 pub use region::Region;
 pub use shape::Shape;
 pub use sizes::Sizes;

@@ -23,9 +23,10 @@ pub enum BodyForm {
 impl Case {
     /// Obstacle to the total form of a body, in words; none if there is none.
     #[must_use]
-    pub fn total_obstacle(&self, body: usize) -> Option<&'static str> {
+    pub fn total_obstacle(&self, body: usize) -> Option<String> {
         let (sph, own) = (&self.sph, &self.bodies[body]);
-        let terms = sph.artificial_stress > 0.0 || sph.xsph > 0.0 || sph.conduction > 0.0;
+        let term = sph.terms.acting().next();
+        let term = term.map(|(_, key)| format!("`sph.{key}` needs the neighbours of each step"));
         let obstacles = [
             (own.rigid.is_some(), "it is rigid"),
             (
@@ -40,10 +41,7 @@ impl Case {
                 sph.smoothing_length != SmoothingLength::Constant,
                 "the smoothing length is variable",
             ),
-            (
-                terms || sph.balsara,
-                "artificial stress, conduction, XSPH and the Balsara switch need the neighbours of each step",
-            ),
+            (term.is_some(), term.as_deref().unwrap_or_default()),
             (
                 self.is_joined(body),
                 "`kernel` contact needs the neighbours of each step",
@@ -58,7 +56,7 @@ impl Case {
             ),
         ];
         let first = obstacles.into_iter().find(|(is_there, _)| *is_there);
-        first.map(|(_, why)| why)
+        first.map(|(_, why)| why.to_owned())
     }
 
     /// True if `kernel` contact joins a body with another.

@@ -1,6 +1,7 @@
 //! The columns of the table of fields.
 
 use bitflags::bitflags;
+use model::{TermOptions, pair_terms};
 
 /// Kind of the value of one particle in a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,72 +116,94 @@ bitflags! {
         /// Whatever is needed before forces of stress and contact, in one message.
         const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
     }
+}
 
-    /// The options of a case that have use for a field: a set, empty for a field of every case.
-    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-    pub struct Owner: u32 {
-        /// Contact beyond the SPH sums.
-        const CONTACT = 1;
-        /// The Balsara switch.
-        const BALSARA = 1 << 1;
-        /// Artificial conduction.
-        const CONDUCTION = 1 << 2;
-        /// XSPH.
-        const XSPH = 1 << 3;
-        /// Loads or rigid bodies that prescribe velocities.
-        const LOADS = 1 << 4;
-        /// Friction or damping between bodies in contact.
-        const FRICTION = 1 << 5;
-        /// The normalised form of the sums.
-        const NORMALISED = 1 << 6;
-        /// `penalty` contact.
-        const PENALTY = 1 << 7;
-        /// Friction or damping of rigid surfaces.
-        const SURFACE_FRICTION = 1 << 8;
-        /// Self-contact.
-        const SELF_CONTACT = 1 << 9;
-        /// Self-contact of folds.
-        const FOLDS = 1 << 10;
-        /// Freezing of particles that fail numerically.
-        const FREEZE = 1 << 11;
-        /// Stress points, which carry the stress.
-        const STRESS_POINTS = 1 << 12;
-        /// The corrected form of the sums.
-        const CORRECTED = 1 << 13;
-        /// Materials that may fail for good.
-        const FAILURE = 1 << 14;
-        /// Absorbing zones.
-        const ABSORBERS = 1 << 15;
-        /// Materials that yield.
-        const YIELD = 1 << 16;
-        /// The record of the largest pressure.
-        const PEAK_PRESSURE = 1 << 17;
-        /// The record of the largest tension.
-        const PEAK_TENSION = 1 << 18;
-        /// The record of the highest temperature.
-        const PEAK_TEMPERATURE = 1 << 19;
-        /// The record of the largest strain rate.
-        const PEAK_STRAIN_RATE = 1 << 20;
-        /// The record of when pressure arrived.
-        const ARRIVAL = 1 << 21;
-        /// Witness planes.
-        const WITNESSES = 1 << 22;
-        /// Gauges that particles carry.
-        const CARRIERS = 1 << 23;
-        /// Materials that soften before they fail.
-        const SOFTENING = 1 << 24;
-        /// Materials whose flaws grow to cracks.
-        const FLAWS = 1 << 25;
-        /// Bodies of the total form.
-        const TOTAL = 1 << 26;
-        /// Contact of gases, whose stiffness follows their pressure.
-        const GAS_CONTACT = 1 << 27;
-        /// Materials that soften where deformation localises.
-        const LOCALISED = 1 << 28;
-        /// The conventional form of the sums.
-        const CONVENTIONAL = 1 << 29;
-        /// Records that a particle keeps because snapshots are to show them.
-        const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
-            | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();
+/// Bit of the first pair term in a set of options.
+const FIRST_TERM: usize = 32;
+
+macro_rules! owners {
+    ($( $(#[$doc:meta])+ $term:ident { $key:ident: $($more:tt)+ } )+) => {
+        #[allow(non_camel_case_types, reason = "variants carry the key of the term")]
+        enum Term { $( $key, )+ }
+
+        bitflags! {
+            /// The options of a case that have use for a field: a set, empty for a field of every case.
+            #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+            pub struct Owner: u64 {
+                /// Contact beyond the SPH sums.
+                const CONTACT = 1;
+                /// Loads or rigid bodies that prescribe velocities.
+                const LOADS = 1 << 1;
+                /// Friction or damping between bodies in contact.
+                const FRICTION = 1 << 2;
+                /// The normalised form of the sums.
+                const NORMALISED = 1 << 3;
+                /// `penalty` contact.
+                const PENALTY = 1 << 4;
+                /// Friction or damping of rigid surfaces.
+                const SURFACE_FRICTION = 1 << 5;
+                /// Self-contact.
+                const SELF_CONTACT = 1 << 6;
+                /// Self-contact of folds.
+                const FOLDS = 1 << 7;
+                /// Freezing of particles that fail numerically.
+                const FREEZE = 1 << 8;
+                /// Stress points, which carry the stress.
+                const STRESS_POINTS = 1 << 9;
+                /// The corrected form of the sums.
+                const CORRECTED = 1 << 10;
+                /// Materials that may fail for good.
+                const FAILURE = 1 << 11;
+                /// Absorbing zones.
+                const ABSORBERS = 1 << 12;
+                /// Materials that yield.
+                const YIELD = 1 << 13;
+                /// The record of the largest pressure.
+                const PEAK_PRESSURE = 1 << 14;
+                /// The record of the largest tension.
+                const PEAK_TENSION = 1 << 15;
+                /// The record of the highest temperature.
+                const PEAK_TEMPERATURE = 1 << 16;
+                /// The record of the largest strain rate.
+                const PEAK_STRAIN_RATE = 1 << 17;
+                /// The record of when pressure arrived.
+                const ARRIVAL = 1 << 18;
+                /// Witness planes.
+                const WITNESSES = 1 << 19;
+                /// Gauges that particles carry.
+                const CARRIERS = 1 << 20;
+                /// Materials that soften before they fail.
+                const SOFTENING = 1 << 21;
+                /// Materials whose flaws grow to cracks.
+                const FLAWS = 1 << 22;
+                /// Bodies of the total form.
+                const TOTAL = 1 << 23;
+                /// Contact of gases, whose stiffness follows their pressure.
+                const GAS_CONTACT = 1 << 24;
+                /// Materials that soften where deformation localises.
+                const LOCALISED = 1 << 25;
+                /// The conventional form of the sums.
+                const CONVENTIONAL = 1 << 26;
+                $(
+                    #[doc = concat!("The pair term `", stringify!($key), "`.")]
+                    const $term = 1 << (FIRST_TERM + Term::$key as usize);
+                )+
+                /// Records that a particle keeps because snapshots are to show them.
+                const PEAKS = Self::PEAK_PRESSURE.bits() | Self::PEAK_TENSION.bits()
+                    | Self::PEAK_TEMPERATURE.bits() | Self::PEAK_STRAIN_RATE.bits() | Self::ARRIVAL.bits();
+            }
+        }
+    };
+}
+pair_terms!(owners);
+
+impl Owner {
+    /// The pair terms that are on.
+    #[must_use]
+    pub fn of_terms(terms: &TermOptions) -> Self {
+        let terms = terms.acting();
+        terms.fold(Self::empty(), |all, (number, _)| {
+            all | Self::from_bits_retain(1 << (FIRST_TERM + number))
+        })
     }
 }

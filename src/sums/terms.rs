@@ -10,27 +10,18 @@ mod conduction;
 mod xsph;
 
 use super::neighbourhood::records;
+use model::TermOptions;
 use numerics::kernel::{PairKernel, PairScale};
 use numerics::lanes::{LANES, Lanes};
-
-/// Artificial stress: [`artificial_stress`].
-pub const ARTIFICIAL_STRESS: u8 = 1;
-/// The Balsara switch on artificial viscosity: [`balsara`].
-pub const BALSARA: u8 = 2;
-/// Artificial conduction between approaching particles.
-pub const CONDUCTION: u8 = 4;
-/// XSPH.
-pub const XSPH: u8 = 8;
+use particles::Owner;
 
 /// The terms that need the kernel's value.
-const SHAPED: u8 = ARTIFICIAL_STRESS | XSPH;
-/// The terms for which particles show a [`TermRecord`].
-pub const RECORDED: u8 = ARTIFICIAL_STRESS | BALSARA | CONDUCTION;
+const SHAPED: Owner = Owner::ARTIFICIAL_STRESS.union(Owner::XSPH);
 
 /// Calls `$work` with whether a set has any terms as a constant.
 macro_rules! with_terms {
     ($set:expr, $name:ident => $work:expr) => {
-        if $set == 0 {
+        if $set.is_empty() {
             const $name: bool = false;
             $work
         } else {
@@ -63,30 +54,19 @@ impl TermRecord {
 }
 
 /// Terms that there are, their coefficients, and the records of particles for them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct PairTerms<'a> {
-    /// Set of the terms: constants of this module.
-    pub set: u8,
+    /// Set of the terms.
+    pub set: Owner,
     /// Records of all particles and images; empty without terms.
     pub records: &'a [TermRecord],
     /// `1/w(Δp/h)`, with `w = W h^d/σ_d`.
     pub inverse_shape: f64,
-    /// Coefficient `α_u` of the conduction.
-    pub conduction: f64,
-    /// Factor ε of XSPH.
-    pub xsph: f64,
+    /// Coefficients.
+    pub options: TermOptions,
 }
 
 impl PairTerms<'_> {
-    /// No terms.
-    pub const NONE: Self = Self {
-        set: 0,
-        records: &[],
-        inverse_shape: 0.0,
-        conduction: 0.0,
-        xsph: 0.0,
-    };
-
     /// Record of the particle or image at an index, if there are terms.
     #[inline(always)]
     pub(crate) fn record<const TERMS: bool>(&self, index: usize) -> &TermRecord {
@@ -100,7 +80,7 @@ impl PairTerms<'_> {
 
 /// The terms of eight receivers, of which those that are not of the set do nothing.
 pub(crate) struct TermSums<V, const TERMS: bool> {
-    set: u8,
+    set: Owner,
     artificial_stress: artificial_stress::Lane<V>,
     balsara: balsara::Lane<V>,
     conduction: conduction::Lane<V>,
@@ -119,15 +99,15 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
             set: terms.set,
             artificial_stress: artificial_stress::Lane::begin(&own, terms.inverse_shape),
             balsara: balsara::Lane::begin(&own),
-            conduction: conduction::Lane::begin(&own, terms.conduction),
-            xsph: xsph::Lane::begin(terms.xsph),
+            conduction: conduction::Lane::begin(&own, terms.options.conduction),
+            xsph: xsph::Lane::begin(terms.options.xsph),
         }
     }
 
     /// True if one of these terms is of the set.
     #[inline(always)]
-    pub fn has(&self, terms: u8) -> bool {
-        TERMS && self.set & terms != 0
+    fn has(&self, terms: Owner) -> bool {
+        TERMS && self.set.intersects(terms)
     }
 
     /// True if one of the terms needs the kernel's value.
@@ -136,10 +116,16 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
         self.has(SHAPED)
     }
 
+    /// True if one of the terms adds to the stress of pairs.
+    #[inline(always)]
+    pub fn repels(&self) -> bool {
+        self.has(Owner::ARTIFICIAL_STRESS)
+    }
+
     /// The viscosity's signal speed.
     #[inline(always)]
     pub fn limit(&self, signal: V, other: &TermRecord) -> V {
-        if self.has(BALSARA) {
+        if self.has(Owner::BALSARA) {
             self.balsara.limit(signal, other)
         } else {
             signal
@@ -149,7 +135,7 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
     /// Adds to the stress of pairs of a `shape`.
     #[inline(always)]
     pub fn repel(&self, stress: &mut [V; 6], other: &TermRecord, shape: V) {
-        if self.has(ARTIFICIAL_STRESS) {
+        if self.repels() {
             self.artificial_stress.repel(stress, other, shape);
         }
     }
@@ -162,7 +148,7 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
         (scale, kernel, shape): (&S, &PairKernel<V>, V),
         (mass, inverse_density): (f64, V),
     ) {
-        if self.has(XSPH) {
+        if self.has(Owner::XSPH) {
             let share = scale.value(kernel, shape).mul(V::splat(mass));
             self.xsph.follow(v, share.mul(inverse_density));
         }
@@ -171,7 +157,7 @@ impl<V: Lanes, const TERMS: bool> TermSums<V, TERMS> {
     /// Flow of conduction times speed (J/kg), added to `work` by `speed`.
     #[inline(always)]
     pub fn conduct(&self, work: V, other: &TermRecord, speed: impl FnOnce() -> V) -> V {
-        if self.has(CONDUCTION) {
+        if self.has(Owner::CONDUCTION) {
             self.conduction.flow(other).mul_add(speed(), work)
         } else {
             work

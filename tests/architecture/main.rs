@@ -52,6 +52,7 @@ fn misplaced_names(source: &Source) -> Vec<Found> {
         "Instant" | "SystemTime" if is_in(TIMELESS) => "is a clock",
         "rayon" if is_in("comm") => "brings threads to MPI",
         "ParticleStore" if is_in("sums") => "is a store: sums take slices",
+        "Case" if is_in("sums") => "is a case: sums take its numbers",
         "Simulation" if !drives => "is for `run` and the bench alone",
         _ => "",
     };
@@ -152,6 +153,41 @@ fn the_source_keeps_the_laws() {
         }
     }
     assert!(all.is_empty(), "the architecture is broken:\n{all}");
+}
+
+/// Files that may name a pair term beside its own: its row, where the sums put terms together, its fields, and what it
+/// does between the sums.
+const FILES_OF_TERMS: &str =
+    "model/pair_terms.rs sums/terms.rs particles/fields.rs engine/sph/term_records.rs";
+
+#[test]
+fn a_pair_term_is_named_in_few_files() {
+    let folder = "sums/terms/";
+    let paths = sources().iter().map(|source| source.path.as_str());
+    let own = paths.clone().filter_map(|path| path.strip_prefix(folder));
+    let terms: Vec<&str> = own.filter_map(|file| file.strip_suffix(".rs")).collect();
+    assert!(terms.contains(&"xsph"), "{terms:?}");
+    assert!(
+        FILES_OF_TERMS
+            .split(' ')
+            .all(|file| paths.clone().any(|path| path == file))
+    );
+    let mut all = String::new();
+    for source in sources()
+        .iter()
+        .filter(|source| !has(FILES_OF_TERMS, &source.path))
+    {
+        for (line, name) in &source.names {
+            let term = terms.iter().find(|term| name.eq_ignore_ascii_case(term));
+            if term.is_some_and(|term| source.path != format!("{folder}{term}.rs")) {
+                writeln!(all, "  src/{}:{line} {name}", source.path).unwrap();
+            }
+        }
+    }
+    assert!(
+        all.is_empty(),
+        "pair terms are named beyond their files:\n{all}"
+    );
 }
 
 /// In a room that has moved away a lint would find nothing.

@@ -69,10 +69,10 @@ pub fn assert_same(a: &Outcome, b: &Outcome) {
 /// [`everything`] with all options of the SPH sums.
 pub fn every_option() -> Case {
     let mut case = everything();
-    case.sph.artificial_stress = 0.3;
-    case.sph.balsara = true;
-    case.sph.conduction = 0.5;
-    case.sph.xsph = 0.5;
+    case.sph.terms.artificial_stress = 0.3;
+    case.sph.terms.balsara = true;
+    case.sph.terms.conduction = 0.5;
+    case.sph.terms.xsph = 0.5;
     case
 }
 

@@ -179,7 +179,7 @@ impl World {
                         beta: 2.0 * alpha,
                         negligible: 0.0,
                     },
-                    terms: PairTerms::NONE,
+                    terms: PairTerms::default(),
                 })
             };
             let first = sums(available()[0]);

@@ -197,7 +197,7 @@ impl World {
                         beta: 0.0,
                         negligible: 0.0,
                     },
-                    terms: PairTerms::NONE,
+                    terms: PairTerms::default(),
                 })
             };
             let first = sums(available()[0]);

@@ -180,7 +180,7 @@ fn momentum<S: PairScale>(
         .around(receivers, neighbours),
         stresses: &records.stress,
         viscosity: VISCOSITY,
-        terms: PairTerms::NONE,
+        terms: PairTerms::default(),
     })
 }
 

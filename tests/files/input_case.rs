@@ -4,7 +4,8 @@ use files::input::{load, output_and_run_only, parse};
 use files::preflight::{approaches, warnings};
 use material::{AfterSpall, Failure, Spall, Strength, library};
 use model::{
-    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength, Vec3,
+    Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
+    TermOptions, Vec3,
 };
 
 fn ready(name: &str, overrides: &[&str]) -> Case {
@@ -296,23 +297,17 @@ fn overrides_reach_every_place() {
 
 #[test]
 fn options_of_the_sums() {
-    let case = ready("quarter-impact", &[]);
-    assert!(!case.sph.balsara);
-    let off = [
-        case.sph.artificial_stress,
-        case.sph.conduction,
-        case.sph.xsph,
-    ];
-    assert_eq!(off.map(f64::to_bits), [0; 3]);
+    let off = ready("quarter-impact", &[]).sph.terms;
+    assert_eq!(off, TermOptions::default());
     let sets = [
         "sph.artificial_stress=0.3",
         "sph.balsara=true",
         "sph.conduction=1",
         "sph.xsph=0.5",
     ];
-    let sph = ready("quarter-impact", &sets).sph;
-    assert!(sph.balsara);
-    let on = [sph.artificial_stress, sph.conduction, sph.xsph];
+    let terms = ready("quarter-impact", &sets).sph.terms;
+    assert!(terms.balsara);
+    let on = [terms.artificial_stress, terms.conduction, terms.xsph];
     assert_eq!(on.map(f64::to_bits), [0.3, 1.0, 0.5].map(f64::to_bits));
 }
 

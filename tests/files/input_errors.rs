@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use files::input::{InputError, load, parse};
+use model::pair_terms;
 
 /// A valid case; mistakes are made by replacing parts of it.
 const GOOD: &str = r#"title = "a test"
@@ -776,12 +777,6 @@ fn a_missing_file_is_named() {
 fn stress_points_say_what_they_do_not_go_with() {
     let form = "[sph]\nform = \"stress_points\"\n";
     for (more, expected) in [
-        (
-            "artificial_stress = 0.3",
-            "`artificial_stress` could act in",
-        ),
-        ("balsara = true", "`balsara` could act in"),
-        ("conduction = 1.0", "`conduction` could act in"),
         ("xsph = 0.5", "`xsph` could act in"),
         ("[contact]\nmode = \"kernel\"", "contact of mode `kernel`"),
         ("[contact]\nmode = \"penalty\"", "contact of mode `penalty`"),
@@ -800,6 +795,35 @@ fn stress_points_say_what_they_do_not_go_with() {
         .replace("[[symmetry]]\naxis = \"x\"\n", "");
     let message = message(&hexagonal, &[]);
     assert!(message.contains("that of `ball` is hexagonal"), "{message}");
+}
+
+/// Each pair term of the table is refused by its key where it cannot act.
+#[test]
+fn pair_terms_are_refused_where_they_cannot_act() {
+    macro_rules! switched_on {
+        ($( $(#[$doc:meta])+ $term:ident { $key:ident: $typed:ident $($more:tt)+ } )+) => {
+            [$( (stringify!($key), if stringify!($typed) == "bool" { "true" } else { "0.5" }) ),+]
+        };
+    }
+    for (key, value) in pair_terms!(switched_on) {
+        let term = format!("sph.{key}={value}");
+        assert!(parse("good", GOOD, std::slice::from_ref(&term)).is_ok());
+        for (other, said) in [
+            (
+                "sph.form=stress_points",
+                format!("stress points have no pairs of particles that `{key}` could act in"),
+            ),
+            (
+                "body.ball.form=total",
+                format!(
+                    "the body `ball` cannot have the total form: `sph.{key}` needs the neighbours of each step"
+                ),
+            ),
+        ] {
+            let message = message(GOOD, &[&term, other]);
+            assert!(message.contains(&said), "{message}");
+        }
+    }
 }
 
 /// What a symmetry plane cuts does not move across it; what comes from afar, or begins at it, may.

@@ -50,7 +50,7 @@ fn artificial_stress_keeps_particles_apart_in_tension() {
         let mut case = rectangle(20.0, 8.0);
         make_elastic(&mut case);
         case.sph.form = form;
-        case.sph.artificial_stress = epsilon;
+        case.sph.terms.artificial_stress = epsilon;
         let mut bar = start(case);
         set_velocities(&mut bar, |x| [1200.0 * x[0] / (10.0 * SPACING), 0.0, 0.0]);
         measurements::diagnose(&mut bar, &Comm::solo());
@@ -87,7 +87,7 @@ fn heating(form: SphForm, l: [f64; 4], balsara: bool) -> f64 {
     case.sph.form = form;
     case.materials[0].strength = Strength::None;
     case.materials[0].failure.spall = None;
-    case.sph.balsara = balsara;
+    case.sph.terms.balsara = balsara;
     // So short that there is no pressure yet.
     case.time_step.max = 1e-13;
     let mut flow = start(case);
@@ -173,7 +173,7 @@ fn conduction_spreads_the_heat_at_the_wall() {
     let wall = |conduction: f64| {
         let mut case = gas(-1.0);
         case.symmetry = planes(&[Axis::X]);
-        case.sph.conduction = conduction;
+        case.sph.terms.conduction = conduction;
         let mut s = start(case);
         while !s.is_finished() {
             advance(&mut s, 1);
@@ -209,7 +209,7 @@ fn conduction_leaves_rest_alone_and_smooths_what_is_compressed() {
         gamma0: 0.0,
         b: 0.0,
     });
-    case.sph.conduction = 1.0;
+    case.sph.terms.conduction = 1.0;
     case.symmetry = planes(&[Axis::X]);
     for moving in [false, true] {
         let mut s = start(case.clone());
@@ -252,7 +252,7 @@ fn xsph_keeps_particles_in_order() {
         let mut case = rectangle(16.0, 16.0);
         make_elastic(&mut case);
         (case.sph.alpha, case.sph.beta) = (0.2, 0.4);
-        case.sph.xsph = xsph;
+        case.sph.terms.xsph = xsph;
         let mut s = start(case);
         let particles = &mut s.particles;
         for (v, &id) in particles.velocity.iter_mut().zip(&particles.id) {
@@ -282,7 +282,7 @@ fn xsph_costs_no_energy() {
             ball("upper", 4.0, 4.0, -800.0),
         ];
         let mut case = case(3, bodies, 3e-7);
-        case.sph.xsph = xsph;
+        case.sph.terms.xsph = xsph;
         case.time_step.max = 2e-10;
         let mut s = start(case);
         while !s.is_finished() {
@@ -312,10 +312,10 @@ fn all_options_together_conserve_energy_and_momentum() {
         let mut case = case(dimension, bodies, 1.0);
         case.default_contact = ContactMode::Kernel;
         case.sph.smoothing_length = SmoothingLength::Variable { min: 0.6, max: 2.0 };
-        case.sph.artificial_stress = 0.3;
-        case.sph.balsara = true;
-        case.sph.conduction = 1.0;
-        case.sph.xsph = 0.5;
+        case.sph.terms.artificial_stress = 0.3;
+        case.sph.terms.balsara = true;
+        case.sph.terms.conduction = 1.0;
+        case.sph.terms.xsph = 0.5;
         let mut s = start(case);
         advance(&mut s, 150);
         assert!(s.state.totals.internal_energy > 0.1 * s.state.initial.kinetic_energy);

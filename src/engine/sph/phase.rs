@@ -108,7 +108,7 @@ impl Sph {
             SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
-        term_records::bytes_of_records(&case.sph) + corrected
+        term_records::bytes_of_records(&case.sph.terms) + corrected
     }
 
     /// Bodies of the total form, if the case has any.

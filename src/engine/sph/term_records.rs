@@ -3,39 +3,27 @@
 use rayon::prelude::*;
 
 use crate::loads::Loads;
-use model::{Case, SphOptions};
+use model::{Case, TermOptions};
 use numerics::kernel::Kernel;
 use particles::Mirrors;
 use particles::neighbours::Lists;
-use particles::{GRAIN, Image, ParticleStore, resize};
+use particles::{GRAIN, Image, Owner, ParticleStore, resize};
 use sums::step::Side;
 use sums::terms::artificial_stress::repulsion;
 use sums::terms::balsara::limiter;
-use sums::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, TermRecord, XSPH};
+use sums::terms::{PairTerms, TermRecord};
 
 /// The pair terms of a case, and what particles and images show for them.
 pub(super) struct Terms {
-    set: u8,
+    set: Owner,
     records: Vec<TermRecord>,
     inverse_shape: f64,
-    sph: SphOptions,
-}
-
-/// The set of pair terms of a case.
-fn set_of(sph: &SphOptions) -> u8 {
-    let wanted = [
-        (ARTIFICIAL_STRESS, sph.artificial_stress > 0.0),
-        (BALSARA, sph.balsara),
-        (CONDUCTION, sph.conduction > 0.0),
-        (XSPH, sph.xsph > 0.0),
-    ];
-    let wanted = wanted.into_iter().filter(|(_, wanted)| *wanted);
-    wanted.fold(0, |set, (term, _)| set | term)
+    options: TermOptions,
 }
 
 /// Bytes of what each particle and image shows for the pair terms of a case.
-pub(super) fn bytes_of_records(sph: &SphOptions) -> usize {
-    if set_of(sph) == 0 {
+pub(super) fn bytes_of_records(options: &TermOptions) -> usize {
+    if Owner::of_terms(options).is_empty() {
         0
     } else {
         size_of::<TermRecord>()
@@ -48,10 +36,10 @@ impl Terms {
         let body = case.bodies.first();
         let ratio = body.map_or(1.0, |b| b.lattice.spacing / b.smoothing_length);
         Self {
-            set: set_of(&case.sph),
+            set: Owner::of_terms(&case.sph.terms),
             records: Vec::new(),
             inverse_shape: kernel.normalisation() / kernel.value(ratio, 1.0),
-            sph: case.sph,
+            options: case.sph.terms,
         }
     }
 
@@ -61,8 +49,7 @@ impl Terms {
             set: self.set,
             records: &self.records,
             inverse_shape: self.inverse_shape,
-            conduction: self.sph.conduction,
-            xsph: self.sph.xsph,
+            options: self.options,
         }
     }
 
@@ -72,10 +59,10 @@ impl Terms {
 
     /// Prepares data of this rank's particles for others, after the first sweep of a step `dt` (s).
     pub fn prepare(&self, particles: &mut ParticleStore, dt: f64) {
-        if self.set & BALSARA != 0 {
+        if self.set.contains(Owner::BALSARA) {
             limit_viscosity(particles);
         }
-        if self.set & CONDUCTION != 0 {
+        if self.set.contains(Owner::CONDUCTION) {
             predict_energies(particles, dt);
         }
     }
@@ -83,11 +70,11 @@ impl Terms {
     /// Records of halo particles and their images, or of this rank's particles and theirs.
     pub fn show(&mut self, particles: &ParticleStore, lists: &Lists, side: Side) {
         let set = self.set;
-        if set == 0 {
+        if set.is_empty() {
             return;
         }
         let images = lists.images();
-        let epsilon = self.sph.artificial_stress;
+        let epsilon = self.options.artificial_stress;
         resize(&mut self.records, images.len());
         let records = self.records.par_iter_mut().zip(images);
         records.with_min_len(GRAIN).for_each(|(record, &image)| {
@@ -96,13 +83,13 @@ impl Terms {
                 return;
             }
             *record = TermRecord::NEUTRAL;
-            if set & ARTIFICIAL_STRESS != 0 {
+            if set.contains(Owner::ARTIFICIAL_STRESS) {
                 record.repulsion = repulsion_shown(particles, image, epsilon);
             }
-            if set & BALSARA != 0 {
+            if set.contains(Owner::BALSARA) {
                 record.half_limiter = 0.5 * particles.viscosity_limiter[i];
             }
-            if set & CONDUCTION != 0 {
+            if set.contains(Owner::CONDUCTION) {
                 record.specific_energy = particles.predicted_energy[i];
             }
         });
@@ -110,7 +97,7 @@ impl Terms {
 
     /// The rest of the drift of a step `dt` (s).
     pub fn drift(&self, particles: &mut ParticleStore, loads: &Loads, dt: f64) {
-        if self.set & XSPH != 0 {
+        if self.set.contains(Owner::XSPH) {
             drift_along(particles, loads, dt);
         }
     }

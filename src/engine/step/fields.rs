@@ -28,9 +28,6 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::YIELD, case.may_yield()),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
-        (Owner::BALSARA, sph.balsara),
-        (Owner::CONDUCTION, sph.conduction > 0.0),
-        (Owner::XSPH, sph.xsph > 0.0),
         (Owner::CONVENTIONAL, sph.form == SphForm::Conventional),
         (Owner::CORRECTED, sph.form == SphForm::Corrected),
         (Owner::NORMALISED, sph.form == SphForm::Normalised),
@@ -42,10 +39,8 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     ]
     .into_iter()
     .filter(|&(_, used)| used)
-    .fold(contact.owners() | records(case), |all, (option, _)| {
-        all | option
-    });
-    Owner::all().difference(used)
+    .fold(Owner::of_terms(&sph.terms), |all, (option, _)| all | option);
+    Owner::all().difference(used | contact.owners() | records(case))
 }
 
 /// Fields that particles have because snapshots or gauges are to show them.

@@ -12,7 +12,8 @@ use super::quantity::{
     Acceleration, Angle, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature,
     Time, Velocity,
 };
-use model::{Axis, BodyForm, SphForm};
+use super::source::Diagnostic;
+use model::{Axis, BodyForm, SphForm, TermOptions, pair_terms};
 
 #[macro_use]
 mod declare;
@@ -238,34 +239,6 @@ tables! {
 }
 
 optional_tables! {
-    /// `[sph]`
-    SphParams {
-        /// How gradients are taken.
-        form: Option<Spanned<SphForm>> = SphForm::Corrected;
-        /// Smoothing length over particle spacing.
-        smoothing: Option<Spanned<f64>> = 1.3, Within(0.6, 3.0);
-        /// Linear viscosity.
-        alpha: Option<Spanned<f64>> = 1.0, NotNegative;
-        /// Quadratic viscosity.
-        beta: Option<Spanned<f64>> = 2.0, NotNegative;
-        /// Constant or variable.
-        smoothing_length: Option<SmoothingName> => "variable where a material is an ideal gas, else constant";
-        /// Smallest h/h₀ of a variable smoothing length.
-        smoothing_length_min: Option<Spanned<f64>>, UpToOne => "1 where that is the default, else 0.6";
-        /// Largest h/h₀ of a variable smoothing length.
-        smoothing_length_max: Option<Spanned<f64>>, Within(1.0, 10.0) => "10 where that is the default, else 2";
-        /// Factor of the artificial stress.
-        artificial_stress: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
-        /// The Balsara switch.
-        balsara: Option<bool> = false;
-        /// Coefficient of the artificial conduction.
-        conduction: Option<Spanned<f64>> = 0.0, Within(0.0, 2.0);
-        /// Factor of XSPH.
-        xsph: Option<Spanned<f64>> = 0.0, Within(0.0, 1.0);
-        /// Stiffness of the hourglass control of the corrected form.
-        hourglass: Option<Spanned<f64>> = 0.1, Within(0.0, 1.0);
-    }
-
     /// `[time_step]`
     TimeStepParams {
         /// Factor of the sound and viscosity criterion.
@@ -294,3 +267,48 @@ optional_tables! {
         keep: Option<Spanned<KeepParams>> => "everything";
     }
 }
+
+/// What a row holds: in error where it has a range.
+macro_rules! held {
+    ($found:expr; = $value:expr) => {
+        $found
+    };
+    ($found:expr; = $value:expr, $($allowed:tt)+) => {
+        $found?
+    };
+}
+
+macro_rules! sph_table {
+    ($( $(#[doc = $doc:literal])+ $term:ident { $key:ident: $typed:ident $($more:tt)+ } )+) => {
+        optional_tables! {
+            /// `[sph]`
+            SphParams {
+                /// How gradients are taken.
+                form: Option<Spanned<SphForm>> = SphForm::Corrected;
+                /// Smoothing length over particle spacing.
+                smoothing: Option<Spanned<f64>> = 1.3, Within(0.6, 3.0);
+                /// Linear viscosity.
+                alpha: Option<Spanned<f64>> = 1.0, NotNegative;
+                /// Quadratic viscosity.
+                beta: Option<Spanned<f64>> = 2.0, NotNegative;
+                /// Constant or variable.
+                smoothing_length: Option<SmoothingName> => "variable where a material is an ideal gas, else constant";
+                /// Smallest h/h₀ of a variable smoothing length.
+                smoothing_length_min: Option<Spanned<f64>>, UpToOne => "1 where that is the default, else 0.6";
+                /// Largest h/h₀ of a variable smoothing length.
+                smoothing_length_max: Option<Spanned<f64>>, Within(1.0, 10.0) => "10 where that is the default, else 2";
+                $( $(#[doc = $doc])+ $key: Option<Spanned<$typed>> $($more)+; )+
+                /// Stiffness of the hourglass control of the corrected form.
+                hourglass: Option<Spanned<f64>> = 0.1, Within(0.0, 1.0);
+            }
+        }
+
+        impl SphParams {
+            /// Options of the pair terms.
+            pub fn terms(&self) -> Result<TermOptions, Diagnostic> {
+                Ok(TermOptions { $( $key: held!(self.$key(); $($more)+), )+ })
+            }
+        }
+    };
+}
+pair_terms!(sph_table);

@@ -3,7 +3,7 @@
 use super::add_moment;
 use crate::momentum::{Forces, Momentum, PairStress, SoftSquare, Viscous};
 use crate::neighbourhood::{Neighbourhood, gather, gather_all, records};
-use crate::terms::{ARTIFICIAL_STRESS, TermSums};
+use crate::terms::TermSums;
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{FULL, along, dot, full, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
@@ -150,7 +150,7 @@ impl PairStress for CorrectedRecord {
             if terms.need_shape() {
                 let scale = &around.sources.scale;
                 let shape = scale.shape(kernel);
-                if terms.has(ARTIFICIAL_STRESS) {
+                if terms.repels() {
                     let mut extra = [zero; 6];
                     terms.repel(&mut extra, shown, shape);
                     for part in &mut extra {

@@ -264,10 +264,7 @@ pub(super) fn sph(
             None if expands => bounds,
             _ => SmoothingLength::Constant,
         },
-        artificial_stress: params.artificial_stress()?,
-        balsara: params.balsara(),
-        conduction: params.conduction()?,
-        xsph: params.xsph()?,
+        terms: params.terms()?,
         hourglass: params.hourglass()?,
     };
     Ok((options, params.smoothing()?))

@@ -13,13 +13,7 @@ pub fn check(case: &Case, at: Option<Range<usize>>) -> Result<(), Diagnostic> {
         return Ok(());
     };
     let refuse = |title: String, help: &str| Err(Diagnostic::new(at.clone(), title).help(help));
-    let options = [
-        ("artificial_stress", case.sph.artificial_stress > 0.0),
-        ("balsara", case.sph.balsara),
-        ("conduction", case.sph.conduction > 0.0),
-        ("xsph", case.sph.xsph > 0.0),
-    ];
-    if let Some((key, _)) = options.into_iter().find(|&(_, wanted)| wanted) {
+    if let Some((_, key)) = case.sph.terms.acting().next() {
         let title = format!("stress points have no pairs of particles that `{key}` could act in");
         return refuse(
             title,
