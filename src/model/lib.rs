@@ -35,7 +35,7 @@ pub mod units;
 pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
-pub use body::{Body, Lattice, LatticeKind};
+pub use body::{Body, Filled, Lattice, LatticeKind};
 pub use closing_speeds::ClosingSpeeds;
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
