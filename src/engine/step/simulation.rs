@@ -129,7 +129,6 @@ impl Simulation {
             removal: Removal::new(&particles),
             particles,
             state: RunState {
-                pairs: vec![PairState::default(); table.active_pairs().len()],
                 loads: vec![LoadState::default(); case.load_names().count()],
                 passed: vec![Passed::default(); accounts.measures.witnesses.ledgers()],
                 total: case.bodies.iter().map(|body| body.total).collect(),
