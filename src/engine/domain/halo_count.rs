@@ -31,6 +31,9 @@ pub(super) struct HaloCount {
     /// Particles that ranks would receive in all counts.
     #[cfg(test)]
     pub(super) found: u64,
+    /// Searches of space for ranks that are near one.
+    #[cfg(test)]
+    searches: AtomicU64,
 }
 
 thread_local! {
@@ -161,6 +164,8 @@ impl HaloCount {
         let farthest = farthest.fold(0.0, f64::max);
         self.sort(slabs, positions, 2.0 * MARGIN * farthest);
         let (received, extents) = (&self.received, &self.extents);
+        #[cfg(test)]
+        let searches = &self.searches;
         let tasks = self.order.par_chunks(SHARE);
         tasks.for_each(|words| {
             let (mut near, mut counts) = NEAR.take();
@@ -169,6 +174,8 @@ impl HaloCount {
                 let owner = (part[0] >> 32) as usize;
                 let mine = &extents[owner];
                 near.clear();
+                #[cfg(test)]
+                searches.fetch_add(1, Relaxed);
                 slabs.near(owner, 2.0 * farthest, |other| {
                     if mine.may_need(&extents[other]) {
                         near.push(other);
@@ -250,6 +257,8 @@ fn lower_box(boxes: &Least, rank: usize, extent: Extent) {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::balance::Balance;
+    use super::super::rank_speed::RankSpeeds;
     use super::super::tally::tally;
     use super::*;
     use particles::Mirrors;
@@ -286,5 +295,27 @@ mod tests {
             let few = (0..slabs.ranks()).filter(|&rank| !count.extents[rank].is_empty()).count() <= SOME;
             prop_assert!(!few || some == count.largest());
         }
+    }
+
+    /// However particles are ordered, space is searched for each rank and not for each particle.
+    #[test]
+    fn halos_take_a_search_a_rank() {
+        const SIDE: u32 = 24;
+        let all = SIDE.pow(3);
+        let positions: Vec<[f64; 3]> = (0..all)
+            .map(|k| k.wrapping_mul(7919) % all)
+            .map(|k| [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(f64::from))
+            .collect();
+        let ranks = 512;
+        let mut slabs = NestedSlabs::on_first([0, 1, 2], 3, ranks);
+        let work = vec![1; positions.len()];
+        let even = RankSpeeds::default();
+        Balance::default().cut(&Comm::solo(), &mut slabs, (&positions, &work), &even);
+        let mut count = HaloCount::default();
+        count.count(&Comm::solo(), &slabs, &positions, &|_| 1.3);
+        assert!(count.largest() > 100);
+        let tasks = positions.len().div_ceil(SHARE);
+        let searches = *count.searches.get_mut();
+        assert!(searches <= (ranks + tasks) as u64, "{searches}");
     }
 }
