@@ -15,8 +15,7 @@ use super::space::Space;
 use super::timers::{Phase, Timers};
 use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
-    Booked, Leave, LoadState, NumericalFailure, PairState, Passed, Reason, Removed, RunState,
-    Votes, Worst,
+    Booked, Leave, LoadState, NumericalFailure, Passed, Reason, Removed, RunState, Votes, Worst,
 };
 use crate::domain::{Halo, InitialLayout, NestedSlabs, Partition};
 use crate::loads::Loads;
