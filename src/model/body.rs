@@ -5,9 +5,10 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid, Vec3,
-    cube,
+    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid,
+    SymmetryPlane, Vec3, cube,
 };
+use numerics::extent::Extent;
 
 /// The arrangement of particles.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -123,6 +124,22 @@ pub struct Body {
     pub smoothing_length: f64,
     /// True if its sums are over the neighbours of its initial configuration, until it tears.
     pub total: bool,
+    /// Its sites as they were counted once it stood in its final place; absent if nobody has counted them.
+    /// A change of shape or lattice makes it void.
+    pub filled: Option<Filled>,
+}
+
+/// Number and bounds of the sites of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Filled {
+    /// The planes above which sites are counted.
+    pub symmetry: Vec<SymmetryPlane>,
+    /// Sites above the planes.
+    pub count: u64,
+    /// Smallest and largest coordinates (m) of all sites of the body; `None` if it has none.
+    pub whole: Option<Extent>,
+    /// Those of the sites above the planes.
+    pub above: Option<Extent>,
 }
 
 impl Body {

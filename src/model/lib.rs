@@ -36,7 +36,7 @@ pub mod units;
 pub use absorber::{Absorber, OuterFace};
 pub use axis::{Axis, SymmetryPlane};
 pub use beginning::Beginning;
-pub use body::{Body, Lattice, LatticeKind};
+pub use body::{Body, Filled, Lattice, LatticeKind};
 pub use closing_speeds::ClosingSpeeds;
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
@@ -236,6 +236,24 @@ impl Case {
             largest + self.bodies[body].initial.velocity_spread
         };
         (0..self.bodies.len()).map(largest).fold(0.0, f64::max)
+    }
+
+    /// True if some bodies may meet so fast that their speed stiffens their contact, see [`Self::impact_stiffness`].
+    #[must_use]
+    pub fn meets_fast(&self) -> bool {
+        let soft = || self.bodies.iter().filter(|body| body.rigid.is_none());
+        let modulus = soft().map(|body| self.contact_modulus(body));
+        let density = soft().map(|body| self.initial_density(body));
+        // A harmonic mean is as large as its smaller value, and with what is rigid twice the other one, at most.
+        let softest = modulus.fold(f64::INFINITY, f64::min) * (1.0 - 1e-9);
+        let densest = 2.0 * density.fold(0.0, f64::max);
+        Self::impact_stiffness(densest, self.impact_speed()) > softest
+    }
+
+    /// Stiffness (Pa) that stops particles of a density (kg/m³) which meet at a speed (m/s), whatever they are of.
+    #[must_use]
+    pub fn impact_stiffness(density: f64, speed: f64) -> f64 {
+        0.85 * density * speed * speed
     }
 
     /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin

@@ -6,6 +6,7 @@
 mod brick;
 mod cells;
 mod extremes;
+mod filled;
 mod filling;
 mod given;
 mod lattice;
@@ -17,12 +18,15 @@ mod search;
 mod shells;
 mod stress_points;
 mod tally;
+mod together;
 mod touch;
 
 pub use brick::Brick;
+pub use filled::fill;
 pub use overlap::{Overlap, close_pairs, overlap, surroundings};
 pub use sample::sample;
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
+pub use together::{counts, for_each_body};
 pub use touch::{touching_distance, touching_value};
 
 use filling::Filling;
@@ -32,8 +36,7 @@ use row::cuts;
 #[cfg(test)]
 mod tests;
 
-/// Rows and blocks of lattices that a thread has visited, in builds with debug assertions: for tests of what may not grow.
-#[cfg(debug_assertions)]
+/// Rows and blocks of lattices that a thread has visited, and sites that it has tested or moved: for tests of what may not grow.
 pub mod visits {
     use std::cell::Cell;
 
@@ -41,9 +44,12 @@ pub mod visits {
         static VISITS: Cell<u64> = const { Cell::new(0) };
     }
 
-    /// Counts one more row, or block of sites.
-    pub fn add() {
-        VISITS.set(VISITS.get() + 1);
+    /// Counts some more in builds with debug assertions.
+    #[inline]
+    pub fn add(more: u64) {
+        if cfg!(debug_assertions) {
+            VISITS.set(VISITS.get() + more);
+        }
     }
 
     /// Rows and blocks visited by some work.
@@ -123,6 +129,10 @@ pub fn count(
     symmetry: &[SymmetryPlane],
     brick: Option<Brick>,
 ) -> u64 {
+    let whole = brick.is_none_or(|brick| brick == Brick::OPEN);
+    if let Some(known) = filled::known(body, symmetry).filter(|_| whole) {
+        return known.count;
+    }
     Filling::of(body, dimension, symmetry).count(&cuts(symmetry, brick))
 }
 
@@ -163,7 +173,10 @@ pub fn search(
 /// These are the extreme layers of particles, which lie half a spacing or so inside the shape.
 #[must_use]
 pub fn bounds(body: &Body, dimension: usize) -> Option<([f64; 3], [f64; 3])> {
-    bounds_above(body, dimension, &[])
+    match &body.filled {
+        Some(known) => known.whole,
+        None => bounds_above(body, dimension, &[]),
+    }
 }
 
 /// [`bounds`] of the [`sites`] above all symmetry planes.
@@ -173,6 +186,9 @@ pub fn bounds_above(
     dimension: usize,
     symmetry: &[SymmetryPlane],
 ) -> Option<([f64; 3], [f64; 3])> {
+    if let Some(known) = filled::known(body, symmetry) {
+        return known.above;
+    }
     Filling::of(body, dimension, symmetry).extremes(&cuts(symmetry, None))
 }
 
@@ -244,6 +260,10 @@ pub fn even_volume(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) ->
 /// The sum of [`Site::share`] of all particles above the symmetry planes.
 #[must_use]
 pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 {
+    #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
+    if body.lattice.grading.is_none() {
+        return count(body, dimension, symmetry, None) as f64;
+    }
     Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
 }
 

@@ -24,6 +24,7 @@ pub fn sample(
         1
     };
     if !is_all && every == 1 {
+        coarse.filled = None;
         coarse.lattice.kind = LatticeKind::Cubic;
         coarse.lattice.angle = 0.0;
         coarse.lattice.axis = None;

@@ -30,6 +30,7 @@ pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) ->
         rigid: None,
         smoothing_length: 1.3 * spacing,
         total: false,
+        filled: None,
     }
 }
 

@@ -34,6 +34,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         rigid: None,
         smoothing_length: 1.3 * spacing,
         total: false,
+        filled: None,
     }
 }
 

@@ -32,6 +32,7 @@ pub fn case() -> Case {
         rigid: None,
         smoothing_length: 1.3 * spacing,
         total: false,
+        filled: None,
     };
     Case {
         title: "Sphere on plate, ⌀ 0.6 mm".to_owned(),

@@ -203,7 +203,7 @@ impl Cloud {
             })
             .collect();
         let mut clusters = ClusterLists::default();
-        clusters.build(&sequence, &lengths, (&[], true));
+        clusters.build(&sequence, &lengths, (None, true));
         Found {
             sequence,
             motion,

@@ -191,6 +191,6 @@ fn sums_are_of_pairs_that_have_met() {
         .iter()
         .filter(|p| p.extremes.closest.is_some());
     assert!((99..200).contains(&met.count()));
-    assert_eq!(simulation.state.pairs.len(), 4950);
+    assert!(simulation.state.pairs.len() < 200);
     assert!(simulation.memory() < 8_000_000, "{}", simulation.memory());
 }

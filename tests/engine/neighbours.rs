@@ -6,7 +6,9 @@ use crate::cloud::{Cloud, Found, Recipe};
 use crate::common::random::Random;
 use model::ContactClass;
 use numerics::ordered::ordered;
-use particles::neighbours::{Chunk, ForeignLists, ForeignTable, PairList, SizeClasses};
+use particles::neighbours::{
+    Chunk, ForeignLists, ForeignTable, GroupRanges, PairList, SizeClasses,
+};
 use particles::{Image, MirrorMask};
 use proptest::prelude::*;
 
@@ -119,7 +121,7 @@ fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
         size_classes: SizeClasses::of_bodies(bodies),
         class: vec![None; bodies * bodies],
         reach2: vec![0.0; bodies * bodies],
-        group_range: vec![0.0; groups * groups],
+        ranges: GroupRanges::new((0..groups).collect(), groups),
         most: None,
     };
     for a in 0..bodies {
@@ -136,8 +138,7 @@ fn foreign_table(bodies: usize, random: &mut Random) -> ForeignTable {
             for (a, b) in [(a, b), (b, a)] {
                 table.class[a * bodies + b] = class;
                 table.reach2[a * bodies + b] = range * range;
-                let slot = &mut table.group_range[a / 2 * groups + b / 2];
-                *slot = slot.max(range);
+                table.ranges.widen(a / 2, b / 2, range);
             }
         }
     }

@@ -41,10 +41,9 @@ fn read(text: &str) -> Case {
 }
 
 /// Rows of lattices that all that `check` tells of a case looks at.
-fn visits_of(rows: u32, moves: bool) -> u64 {
-    let text = discs(rows, moves);
+fn visits_of(text: &str) -> u64 {
     visits::of(|| {
-        let case = read(&text);
+        let case = read(text);
         let approaches = approaches(&case);
         let steps = expected_steps(&case, &approaches, 0.0).unwrap();
         (
@@ -59,8 +58,51 @@ fn visits_of(rows: u32, moves: bool) -> u64 {
 #[test]
 fn four_times_as_many_bodies_take_four_times_the_work() {
     for moves in [false, true] {
-        let [few, many] = [22, 44].map(|rows| visits_of(rows, moves));
+        let [few, many] = [22, 44].map(|rows| visits_of(&discs(rows, moves)));
         assert!(many < 5 * few, "{moves}: {few} {many}");
+    }
+}
+
+/// Balls of glass in so many rows, columns and layers, of which one in five flies.
+fn balls(rows: u32) -> String {
+    let mut text = "
+        dimension = 3
+        spacing = \"0.2 mm\"
+        run.end_time = \"5 us\"
+        material.metal.library = \"copper\"
+    "
+    .to_owned();
+    for k in 0..rows.pow(3) {
+        let [x, y, z] = [k % rows, k / rows % rows, k / rows.pow(2)].map(|n| 1.3 * f64::from(n));
+        let speed = if k % 5 == 0 { -300 } else { 0 };
+        let _ = write!(
+            text,
+            "
+            [[body]]
+            name = \"ball-{k}\"
+            material = \"metal\"
+            shape.sphere = {{ centre = [\"{x} mm\", \"{y} mm\", \"{z} mm\"], radius = \"0.5 mm\" }}
+            velocity = [0, 0, \"{speed} m/s\"]
+            "
+        );
+    }
+    text
+}
+
+/// The sites of a body are counted once, for all that asks for them, and searched where it may meet others.
+#[test]
+fn bodies_of_glass_are_counted_once() {
+    let of_each = [3, 6].map(|rows: u32| {
+        let text = balls(rows);
+        let all = visits_of(&text) / u64::from(rows.pow(3));
+        let mut case = read(&text);
+        case.bodies.iter_mut().for_each(|body| body.filled = None);
+        let once = visits::of(|| populate::fill(&mut case.bodies, 3, &[]));
+        println!("{all} and {} of each body", once / u64::from(rows.pow(3)));
+        [all, once / u64::from(rows.pow(3))]
+    });
+    for [all, once] in of_each {
+        assert!(all < 4 * once, "{of_each:?}");
     }
 }
 

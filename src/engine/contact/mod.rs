@@ -32,7 +32,7 @@ pub use force::{BodyForce, ContactForce, TaskForces};
 pub use pair::Pair;
 pub use phase::Contact;
 pub use sums::{Closest, PairExtremes};
-pub(crate) use sums::{ContactSums, PairBook, PairSums, least, pair_key};
+pub(crate) use sums::{ContactSums, PairBook, PairSums, least, pair_key, pair_of};
 pub(crate) use surfaces::SurfaceForces;
 pub use table::ContactTable;
 pub use view::ContactView;

@@ -92,7 +92,7 @@ impl Constants for Overlap {
 fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
     let modulus = harmonic_mean(case, bodies, |body| case.contact_modulus(body));
     let speed = case.closing_speed(bodies[0], bodies[1]);
-    modulus.max(0.85 * meeting_density(case, bodies) * speed * speed)
+    modulus.max(Case::impact_stiffness(meeting_density(case, bodies), speed))
 }
 
 /// Harmonic mean of two bodies' densities (kg/m³).

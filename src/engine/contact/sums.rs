@@ -66,6 +66,11 @@ pub(crate) fn pair_key(bodies: usize, a: usize, b: usize) -> usize {
     a.min(b) * bodies + a.max(b)
 }
 
+/// The pair of a number, see [`pair_key`].
+pub(crate) fn pair_of(bodies: usize, key: usize) -> [usize; 2] {
+    [key / bodies, key % bodies]
+}
+
 /// Sums of contact over some particles.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ContactSums {

@@ -6,7 +6,7 @@ use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use model::{Body, Case, ContactMode, ContactPair, SelfContact};
 use numerics::kernel::{Kernel, SUPPORT};
-use particles::neighbours::{ForeignTable, Groups, SizeClasses};
+use particles::neighbours::{ForeignTable, GroupRanges, Groups, SizeClasses};
 use particles::{HaloPhase, Owner, ParticleStore};
 
 /// All pairs of size classes.
@@ -29,6 +29,8 @@ pub struct ContactTable {
     /// Bodies of gas, by body.
     pub(super) gases: Vec<Option<Gas>>,
     owners: Owner,
+    /// True if parts of a body have contact.
+    has_own: bool,
 }
 
 impl ContactTable {
@@ -41,15 +43,15 @@ impl ContactTable {
         let mut table = Self {
             kernel: Kernel::new(case.dimension),
             foreign: ForeignTable {
-                size_classes,
                 class: vec![None; n * n],
                 reach2: vec![0.0; n * n],
-                group_range: vec![0.0; groups.count() * groups.count()],
+                ranges: group_ranges(&groups, &size_classes),
                 most: case
                     .bodies
                     .iter()
                     .any(|body| body.lattice.sizes.is_some())
                     .then(|| SizeClasses::longest_range(case)),
+                size_classes,
             },
             groups,
             halo: HaloPhase::STRESS,
@@ -59,6 +61,7 @@ impl ContactTable {
             expansions: Vec::with_capacity(case.bodies.len()),
             gases: case.bodies.iter().map(|body| Gas::of(case, body)).collect(),
             owners: Owner::empty(),
+            has_own: case.self_contact.is_some(),
         };
         for body in &case.bodies {
             table
@@ -125,7 +128,12 @@ impl ContactTable {
     /// Adds the next pair.
     fn add(&mut self, case: &Case, size_classes: [usize; 2], bodies: [&Body; 2]) {
         let [a, b] = size_classes.map(|size_class| self.foreign.size_classes.body(size_class));
-        let mode = mode_between(case, a, b);
+        // Of those that share a size class any two stand for all.
+        let mode = if self.foreign.size_classes.is_shared(size_classes[0]) && a == b {
+            case.default_contact.clone()
+        } else {
+            mode_between(case, a, b)
+        };
         let pair = Pair::new(case, &self.kernel, bodies, &mode);
         let modulus = bodies.map(|body| case.contact_modulus(body));
         let of = Between {
@@ -139,7 +147,6 @@ impl ContactTable {
         self.modes.push(&of, &mode);
         self.pairs.push(pair);
         let [group, other] = [a, b].map(|body| self.groups.of_body[body]);
-        // What a body meets of itself is found among the own neighbours, not as of another group.
         if mode.class().is_none() || (group == other && a != b) {
             return;
         }
@@ -149,16 +156,15 @@ impl ContactTable {
         let (at, range) = (self.at(size_classes[0], size_classes[1]), SUPPORT * pair.h);
         self.foreign.class[at] = mode.class();
         self.foreign.reach2[at] = range * range;
-        if a != b {
-            let widest = &mut self.foreign.group_range[group * self.groups.count() + other];
-            *widest = widest.max(range);
+        // What a body meets of itself is found among the own neighbours, not as of another group.
+        if a != b || self.foreign.size_classes.is_shared(size_classes[0]) {
+            self.foreign.ranges.widen(group, other, range);
         }
     }
 
     /// The longest range of contact between two groups (m), zero without.
     pub(crate) fn longest_range(&self) -> f64 {
-        let ranges = self.foreign.group_range.iter().copied();
-        ranges.fold(0.0, f64::max)
+        self.foreign.ranges.longest()
     }
 
     /// Constants of a mode for a receiver of size class `a` and a neighbour of size class `b`.
@@ -195,6 +201,9 @@ impl ContactTable {
     /// Parameters of the smallest particles of two bodies, if they have contact beyond the SPH sums.
     #[must_use]
     pub fn between(&self, a: usize, b: usize) -> Option<&Pair> {
+        if a == b && !self.has_own {
+            return None;
+        }
         let [a, b] = [a, b].map(|body| self.foreign.size_classes.smallest(body));
         self.foreign.class[self.at(a, b)].map(|_| self.pair(a, b))
     }
@@ -258,16 +267,46 @@ impl ContactTable {
         pairs.any(|pair| pair.friction.is_any())
     }
 
-    /// The unordered pairs of bodies with contact beyond the SPH sums; a body with itself where its
-    /// parts have contact.
+    /// The shortest mean smoothing length (m) of two bodies with contact beyond the SPH sums, infinite without.
     #[must_use]
-    pub fn active_pairs(&self) -> Vec<[usize; 2]> {
-        let n = self.bodies();
-        (0..n)
-            .flat_map(|a| (a..n).map(move |b| [a, b]))
-            .filter(|&[a, b]| self.between(a, b).is_some())
-            .collect()
+    pub(crate) fn shortest(&self) -> f64 {
+        let size_classes = &self.foreign.size_classes;
+        let all = 0..size_classes.count();
+        let pairs = all.clone().flat_map(|a| all.clone().map(move |b| (a, b)));
+        let apart = pairs.filter(|&(a, b)| {
+            size_classes.body(a) != size_classes.body(b) || size_classes.is_shared(a)
+        });
+        let lengths = apart.filter_map(|(a, b)| {
+            let at = self.at(a, b);
+            self.foreign.class[at].map(|_| self.pairs[at].h)
+        });
+        lengths.fold(f64::INFINITY, f64::min)
     }
+}
+
+/// Ranges between groups, without contact so far: bodies of one size class are groups of one kind, unless they form a group
+/// with others.
+fn group_ranges(groups: &Groups, size_classes: &SizeClasses) -> GroupRanges {
+    let mut members = vec![0; groups.of_bodies];
+    for &group in &groups.of_body {
+        members[group] += 1;
+    }
+    // The last kind is that of stress points, which have no contact.
+    let all = size_classes.count() + groups.of_bodies;
+    let mut kinds = vec![all; groups.count()];
+    for (body, &group) in groups.of_body.iter().enumerate() {
+        kinds[group] = if members[group] == 1 {
+            size_classes.smallest(body)
+        } else {
+            size_classes.count() + group
+        };
+    }
+    let mut known = kinds.clone();
+    known.sort_unstable();
+    known.dedup();
+    let place = |kind: usize| known.partition_point(|&known| known < kind);
+    let kinds = kinds.into_iter().map(place).collect();
+    GroupRanges::new(kinds, known.len())
 }
 
 /// Mode of contact between two bodies, or fragments of one.

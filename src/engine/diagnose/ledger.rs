@@ -13,6 +13,8 @@ use numerics::vector::{dot, norm};
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairState {
+    /// The two bodies, the smaller index first; one body twice for its parts.
+    pub bodies: [usize; 2],
     /// Force of the second body on the first now (N).
     pub force: [f64; 3],
     /// Its time integral (N s).
@@ -248,7 +250,7 @@ pub struct RunState {
     /// Largest of these so far, of any component (N m s).
     #[serde(default)]
     pub angular_momentum_put_in: f64,
-    /// Ledgers of the pairs of bodies in contact.
+    /// Ledgers of the pairs of bodies that have come into reach of each other, in the order of their bodies.
     pub pairs: Vec<PairState>,
     /// Ledgers of prescribed velocities, rigid bodies, absorbing zones and rigid surfaces.
     pub loads: Vec<LoadState>,
@@ -309,6 +311,20 @@ fn step_or_none<'a, D: Deserializer<'a>>(from: D) -> Result<f64, D::Error> {
 }
 
 impl RunState {
+    /// The ledger of a pair of bodies, a new one for those that have not met so far.
+    pub(super) fn pair(&mut self, bodies: [usize; 2]) -> &mut PairState {
+        let found = self.pairs.binary_search_by_key(&bodies, |pair| pair.bodies);
+        let at = found.unwrap_or_else(|at| {
+            let new = PairState {
+                bodies,
+                ..PairState::default()
+            };
+            self.pairs.insert(at, new);
+            at
+        });
+        &mut self.pairs[at]
+    }
+
     /// Notes which bodies have the total form at a time (s), which ones have left it, and the factor by which neighbours may
     /// be farther apart.
     pub(crate) fn book_forms(

@@ -17,7 +17,7 @@ impl Meetings {
         size_of::<(usize, PairExtremes)>() * self.pairs.capacity() + 8 * self.words.capacity()
     }
 
-    fn keys(&self) -> impl Iterator<Item = usize> {
+    pub fn keys(&self) -> impl Iterator<Item = usize> {
         self.pairs.iter().map(|pair| pair.0)
     }
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::ledger::{NearestPair, RunState};
 use super::meetings::Meetings;
-use crate::contact::{Closest, Contact, ContactTable, least, pair_key};
+use crate::contact::{Closest, Contact, ContactTable, least, pair_key, pair_of};
 use crate::domain::Span;
 use crate::loads::Loads;
 use comm::{Comm, Joint};
@@ -28,8 +28,6 @@ pub(crate) struct StepSums {
     pub span: Span,
     uncorrected: i64,
     meetings: Meetings,
-    /// The case's pairs of bodies with contact, in the order of [`RunState::pairs`].
-    pair_keys: Vec<usize>,
     bodies: usize,
     /// Particles that have crossed a symmetry plane, by task.
     crossed: Vec<Vec<usize>>,
@@ -62,11 +60,8 @@ pub(crate) struct Booked<'a> {
 
 impl StepSums {
     pub fn new(table: &ContactTable) -> Self {
-        let bodies = table.bodies();
-        let pairs = table.active_pairs().into_iter();
         Self {
-            pair_keys: pairs.map(|[a, b]| pair_key(bodies, a, b)).collect(),
-            bodies,
+            bodies: table.bodies(),
             crossed: Vec::new(),
             friction: table.has_heat(),
             meetings: Meetings::default(),
@@ -82,10 +77,7 @@ impl StepSums {
 
     pub fn memory(&self) -> usize {
         let crossed = self.crossed.iter().map(Vec::capacity).sum::<usize>();
-        self.meetings.memory()
-            + size_of::<usize>() * crossed
-            + size_of::<usize>() * self.pair_keys.capacity()
-            + self.joint.memory()
+        self.meetings.memory() + size_of::<usize>() * crossed + self.joint.memory()
     }
 
     /// Particles that crossed a symmetry plane change places with their images; books the impulse.
@@ -240,8 +232,13 @@ impl StepSums {
         }
         state.plane_crossings += std::mem::take(&mut self.crossings);
         let along = std::array::from_fn(|a| booked.mirrors.plane(a).is_none());
-        for (pair, &key) in state.pairs.iter_mut().zip(&self.pair_keys) {
-            pair.book(contact.pairs.get(key), along, dt);
+        let bodies = self.bodies;
+        for key in self.meetings.keys() {
+            state.pair(pair_of(bodies, key));
+        }
+        for pair in &mut state.pairs {
+            let [a, b] = pair.bodies;
+            pair.book(contact.pairs.get(pair_key(bodies, a, b)), along, dt);
         }
         state.interpenetrated = state.interpenetrated.max(contact.interpenetrated);
         state.uncorrected = self.uncorrected;
@@ -258,10 +255,8 @@ impl StepSums {
     pub fn join_extremes(&mut self, comm: &Comm, state: &mut RunState) {
         let bodies = self.bodies;
         for (key, extremes) in self.meetings.join(comm) {
-            let Ok(at) = self.pair_keys.binary_search(&key) else {
-                continue;
-            };
-            state.pairs[at].extremes.join(&extremes);
+            let met = pair_of(bodies, key);
+            state.pair(met).extremes.join(&extremes);
             let Some(Closest {
                 distance,
                 particles,
@@ -271,7 +266,7 @@ impl StepSums {
             };
             let nearest = NearestPair {
                 distance,
-                bodies: [key / bodies, key % bodies],
+                bodies: met,
                 particles,
             };
             let worst = &mut state.worst.nearest;

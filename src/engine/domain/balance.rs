@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::histogram::Histogram;
 use super::least::Least;
-use super::nested::{NestedSlabs, Slab};
+use super::nested::{Cut, NestedSlabs, Slab};
 use super::rank_speed::RankSpeeds;
 use comm::Comm;
 use numerics::ordered::{disordered, ordered};
@@ -16,8 +16,11 @@ pub struct Balance {
     pub histogram: Histogram,
     /// The slabs that a level cuts.
     slabs: Vec<Slab>,
-    /// For each first rank of such a slab its place there.
+    /// By particle the place of its slab there, or [`UNCUT`].
     places: Vec<u32>,
+    /// How the level before cuts each of its slabs, the first of their parts in `parts`, and the places of those.
+    cuts: Vec<(Cut, usize)>,
+    parts: Vec<u32>,
     /// Smallest and largest coordinates of each, as words.
     ends: Least,
 }
@@ -25,6 +28,9 @@ pub struct Balance {
 /// The mean work of all particles over what one counts at least, so that no rank owns much more than so many even
 /// shares because its own take little work: what a rank takes of memory goes by their number.
 pub const MOST_UNEVEN: u64 = 2;
+
+/// The place of a slab of one rank, which nobody cuts.
+const UNCUT: u32 = u32::MAX;
 
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
@@ -42,15 +48,18 @@ impl Balance {
     ) {
         let floor = floor(comm, work);
         self.slabs.clear();
-        self.slabs.push(slabs.whole());
+        self.slabs.extend(Some(slabs.whole()).filter(Slab::is_cut));
+        self.places.clear();
+        self.places.resize(positions.len(), 0);
         for level in 0..slabs.levels() {
-            self.slabs.retain(Slab::is_cut);
+            if level > 0 {
+                self.descend(slabs, level, positions);
+            }
             if self.slabs.is_empty() {
                 break;
             }
             self.count(comm, slabs, level, (positions, work, floor));
             self.split(slabs, rank_speeds);
-            self.descend();
         }
     }
 
@@ -63,28 +72,14 @@ impl Balance {
         level: usize,
         (positions, work, floor): (&[[f64; 3]], &[u32], u32),
     ) {
-        let ranks = slabs.ranks();
-        self.places.clear();
-        self.places.resize(ranks, u32::MAX);
-        for (place, slab) in (0..).zip(&self.slabs) {
-            self.places[slab.ranks().start] = place;
-        }
-        let axis = slabs.axis(level);
-        let places = &self.places;
-        let place_of = |position: &[f64; 3]| {
-            let first = slabs.slab_at(position, level).ranks().start;
-            // Nobody cuts a slab of one rank.
-            (places[first] != u32::MAX).then_some(places[first] as usize)
-        };
+        let (ranks, axis) = (slabs.ranks(), slabs.axis(level));
         self.ends.begin(2 * self.slabs.len());
-        let ends = &self.ends;
-        positions.par_chunks(SHARE).for_each(|positions| {
+        let (ends, places) = (&self.ends, &self.places);
+        let tasks = positions.par_chunks(SHARE).zip(places.par_chunks(SHARE));
+        tasks.for_each(|(positions, places)| {
             // Those of one slab follow each other: each run is told once.
-            let mut run = (usize::MAX, [u64::MAX; 2]);
-            for position in positions {
-                let Some(place) = place_of(position) else {
-                    continue;
-                };
+            let mut run = (UNCUT, [u64::MAX; 2]);
+            for (position, &place) in positions.iter().zip(places) {
                 if place != run.0 {
                     tell_ends(ends, run);
                     run = (place, [u64::MAX; 2]);
@@ -105,8 +100,8 @@ impl Balance {
             self.histogram.reset_each(ends.zip(cuts), ranks);
         }
         self.histogram.add_all(positions.len(), |i| {
-            let place = place_of(&positions[i])?;
-            Some((place, positions[i][axis], u64::from(work[i].max(floor))))
+            let work = u64::from(work[i].max(floor));
+            (places[i] != UNCUT).then(|| (places[i] as usize, positions[i][axis], work))
         });
         self.histogram.sum(comm);
     }
@@ -124,13 +119,33 @@ impl Balance {
         }
     }
 
-    /// On to the slabs that the next level cuts.
-    fn descend(&mut self) {
-        let cut = self.slabs.len();
-        for place in 0..cut {
-            self.slabs.extend(self.slabs[place].cut().all());
+    /// On to the slabs that a level cuts, which are parts of those that the level before has cut.
+    fn descend(&mut self, slabs: &NestedSlabs, level: usize, positions: &[[f64; 3]]) {
+        self.cuts.clear();
+        self.parts.clear();
+        let before = self.slabs.len();
+        for place in 0..before {
+            let cut = self.slabs[place].cut();
+            self.cuts.push((cut, self.parts.len()));
+            for part in cut.all() {
+                if part.is_cut() {
+                    let place = u32::try_from(self.slabs.len() - before).unwrap_or(UNCUT);
+                    self.parts.push(place);
+                    self.slabs.push(part);
+                } else {
+                    self.parts.push(UNCUT);
+                }
+            }
         }
-        self.slabs.drain(..cut);
+        self.slabs.drain(..before);
+        let (cuts, parts, axis) = (&self.cuts, &self.parts, slabs.axis(level - 1));
+        let places = self.places.par_iter_mut().zip(positions);
+        places.with_min_len(SHARE).for_each(|(place, position)| {
+            if *place != UNCUT {
+                let (cut, first) = &cuts[*place as usize];
+                *place = parts[first + cut.part_at(position[axis], slabs.faces())];
+            }
+        });
     }
 
     /// Bytes allocated.
@@ -138,7 +153,8 @@ impl Balance {
     pub fn memory(&self) -> usize {
         self.histogram.memory()
             + size_of::<Slab>() * self.slabs.capacity()
-            + 4 * self.places.capacity()
+            + 4 * (self.places.capacity() + self.parts.capacity())
+            + size_of::<(Cut, usize)>() * self.cuts.capacity()
             + self.ends.memory()
     }
 }
@@ -155,9 +171,9 @@ fn floor(comm: &Comm, work: &[u32]) -> u32 {
 }
 
 /// Joins the ends that a task has found of a slab, if any, with those of the others.
-fn tell_ends(all: &Least, (place, ends): (usize, [u64; 2])) {
-    if place != usize::MAX {
-        all.lower(2 * place, ends);
+fn tell_ends(all: &Least, (place, ends): (u32, [u64; 2])) {
+    if place != UNCUT {
+        all.lower(2 * place as usize, ends);
     }
 }
 

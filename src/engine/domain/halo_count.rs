@@ -1,6 +1,7 @@
 //! Number of particles that ranks would receive of each other in some slabs, counted from particles
 //! on any ranks.
 
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
@@ -19,6 +20,10 @@ pub(super) struct HaloCount {
     /// Of each rank the words of the box around what would be its particles.
     boxes: Least,
     extents: Vec<Extent>,
+    /// The owner of each particle.
+    owners: Vec<u32>,
+    /// Particles that may be near other ranks, by their owners: as words of an owner and a particle.
+    order: Vec<u64>,
     /// Particles that each rank would hear of, as threads find them.
     received: Vec<AtomicU64>,
     /// The same of all ranks.
@@ -26,6 +31,14 @@ pub(super) struct HaloCount {
     /// Particles that ranks would receive in all counts.
     #[cfg(test)]
     pub(super) found: u64,
+    /// Searches of space for ranks that are near one.
+    #[cfg(test)]
+    searches: AtomicU64,
+}
+
+thread_local! {
+    /// Buffers of a thread: ranks near one, and particles that they would receive of it.
+    static NEAR: RefCell<(Vec<usize>, Vec<u64>)> = RefCell::default();
 }
 
 /// Particles that a task looks at.
@@ -33,6 +46,9 @@ const SHARE: usize = 4096;
 
 /// Ranks whose halos tell of those of all.
 const SOME: usize = 8;
+
+/// The word of a particle that no other rank is near to.
+const DEEP: u64 = u64::MAX;
 
 /// No place.
 const NOWHERE: Brick = Brick {
@@ -111,18 +127,21 @@ impl HaloCount {
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) {
         self.boxes.begin(Extent::WORDS * slabs.ranks());
+        self.owners.resize(positions.len(), 0);
         let boxes = &self.boxes;
-        let tasks = positions.par_chunks(SHARE).enumerate();
-        tasks.for_each(|(task, positions)| {
+        let owners = self.owners.par_chunks_mut(SHARE);
+        let tasks = positions.par_chunks(SHARE).zip(owners).enumerate();
+        tasks.for_each(|(task, (positions, owners))| {
             // Those of one rank follow each other: each run is told once.
             let (mut owner, mut region, mut extent) = (0, NOWHERE, Extent::EMPTY);
-            for (k, position) in positions.iter().enumerate() {
+            for (k, (position, of)) in positions.iter().zip(owners).enumerate() {
                 if !region.holds(position) {
                     lower_box(boxes, owner, extent);
                     owner = slabs.owner(position);
                     (region, extent) = (slabs.region(owner), Extent::EMPTY);
                 }
                 extent.add(position, reach(task * SHARE + k));
+                *of = u32::try_from(owner).expect("few ranks");
             }
             lower_box(boxes, owner, extent);
         });
@@ -141,30 +160,43 @@ impl HaloCount {
     ) {
         self.received.clear();
         self.received.resize_with(slabs.ranks(), AtomicU64::default);
-        let (received, extents) = (&self.received, &self.extents);
-        let farthest = extents.iter().map(|extent| extent.reach);
+        let farthest = self.extents.iter().map(|extent| extent.reach);
         let farthest = farthest.fold(0.0, f64::max);
-        let tasks = positions.par_chunks(SHARE).enumerate();
-        tasks.for_each(|(task, positions)| {
-            let (mut owner, mut region, mut deep) = (0, NOWHERE, NOWHERE);
-            for (k, position) in positions.iter().enumerate() {
-                if deep.holds(position) {
-                    continue;
-                }
-                if !region.holds(position) {
-                    owner = slabs.owner(position);
-                    region = slabs.region(owner);
-                    deep = region.widened(-2.0 * MARGIN * farthest);
-                }
-                let reach = reach(task * SHARE + k);
-                slabs.near_place(position, reach + farthest, |other| {
-                    let there = &extents[other];
-                    let is_near = there.is_near((position, position), reach + there.reach);
-                    if is_near && other != owner {
-                        received[other].fetch_add(1, Relaxed);
+        self.sort(slabs, positions, 2.0 * MARGIN * farthest);
+        let (received, extents) = (&self.received, &self.extents);
+        #[cfg(test)]
+        let searches = &self.searches;
+        let tasks = self.order.par_chunks(SHARE);
+        tasks.for_each(|words| {
+            let (mut near, mut counts) = NEAR.take();
+            let parts = words.chunk_by(|one, other| one >> 32 == other >> 32);
+            for part in parts.filter(|part| part[0] != DEEP) {
+                let owner = (part[0] >> 32) as usize;
+                let mine = &extents[owner];
+                near.clear();
+                #[cfg(test)]
+                searches.fetch_add(1, Relaxed);
+                slabs.near(owner, 2.0 * farthest, |other| {
+                    if mine.may_need(&extents[other]) {
+                        near.push(other);
                     }
                 });
+                counts.clear();
+                counts.resize(near.len(), 0);
+                for word in part {
+                    let i = (word & u64::from(u32::MAX)) as usize;
+                    let (position, reach) = (&positions[i], reach(i));
+                    for (count, &other) in counts.iter_mut().zip(&near) {
+                        let there = &extents[other];
+                        let is_near = there.is_near((position, position), reach + there.reach);
+                        *count += u64::from(is_near);
+                    }
+                }
+                for (&other, &count) in near.iter().zip(&counts) {
+                    received[other].fetch_add(count, Relaxed);
+                }
             }
+            NEAR.set((near, counts));
         });
         self.halos.clear();
         let received = self.received.iter_mut().map(|received| *received.get_mut());
@@ -176,10 +208,40 @@ impl HaloCount {
         }
     }
 
+    /// Puts particles in the order of their owners; of those that no other rank is nearer to than some depth (m) none
+    /// is looked at.
+    fn sort(&mut self, slabs: &NestedSlabs, positions: &[[f64; 3]], depth: f64) {
+        self.order.resize(positions.len(), DEEP);
+        let order = self.order.par_chunks_mut(SHARE);
+        let tasks = order
+            .zip(positions.par_chunks(SHARE))
+            .zip(self.owners.par_chunks(SHARE));
+        tasks
+            .enumerate()
+            .for_each(|(task, ((order, positions), owners))| {
+                let (mut last, mut deep) = (u32::MAX, NOWHERE);
+                for (k, ((word, position), &owner)) in
+                    order.iter_mut().zip(positions).zip(owners).enumerate()
+                {
+                    if owner != last {
+                        deep = slabs.region(owner as usize).widened(-depth);
+                        last = owner;
+                    }
+                    *word = if deep.holds(position) {
+                        DEEP
+                    } else {
+                        u64::from(owner) << 32 | (task * SHARE + k) as u64
+                    };
+                }
+            });
+        self.order.par_sort_unstable();
+    }
+
     /// Bytes allocated.
     pub(super) fn memory(&self) -> usize {
         self.boxes.memory()
-            + 8 * (self.received.capacity() + self.halos.capacity())
+            + 8 * (self.received.capacity() + self.halos.capacity() + self.order.capacity())
+            + 4 * self.owners.capacity()
             + size_of::<Extent>() * self.extents.capacity()
     }
 }
@@ -195,6 +257,8 @@ fn lower_box(boxes: &Least, rank: usize, extent: Extent) {
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::balance::Balance;
+    use super::super::rank_speed::RankSpeeds;
     use super::super::tally::tally;
     use super::*;
     use particles::Mirrors;
@@ -231,5 +295,27 @@ mod tests {
             let few = (0..slabs.ranks()).filter(|&rank| !count.extents[rank].is_empty()).count() <= SOME;
             prop_assert!(!few || some == count.largest());
         }
+    }
+
+    /// However particles are ordered, space is searched for each rank and not for each particle.
+    #[test]
+    fn halos_take_a_search_a_rank() {
+        const SIDE: u32 = 24;
+        let all = SIDE.pow(3);
+        let positions: Vec<[f64; 3]> = (0..all)
+            .map(|k| k.wrapping_mul(7919) % all)
+            .map(|k| [k % SIDE, k / SIDE % SIDE, k / (SIDE * SIDE)].map(f64::from))
+            .collect();
+        let ranks = 512;
+        let mut slabs = NestedSlabs::on_first([0, 1, 2], 3, ranks);
+        let work = vec![1; positions.len()];
+        let even = RankSpeeds::default();
+        Balance::default().cut(&Comm::solo(), &mut slabs, (&positions, &work), &even);
+        let mut count = HaloCount::default();
+        count.count(&Comm::solo(), &slabs, &positions, &|_| 1.3);
+        assert!(count.largest() > 100);
+        let tasks = positions.len().div_ceil(SHARE);
+        let searches = *count.searches.get_mut();
+        assert!(searches <= (ranks + tasks) as u64, "{searches}");
     }
 }

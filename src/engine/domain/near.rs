@@ -11,23 +11,13 @@ impl NestedSlabs {
     pub(super) fn near(&self, rank: usize, range: f64, mut emit: impl FnMut(usize)) {
         let region = self.region(rank);
         if !region.is_empty() {
-            self.descend_to(&Within { region, range }, |other| {
+            let within = Within { region, range };
+            self.descend((self.whole(), Brick::OPEN), &within, &mut |other| {
                 if other != rank {
                     emit(other);
                 }
             });
         }
-    }
-
-    /// Tells the ranks, ascending, that may own anything within a range (m) of a position (m).
-    pub(super) fn near_place(&self, position: &[f64; 3], range: f64, emit: impl FnMut(usize)) {
-        let [lower, upper] = [*position; 2];
-        let region = Brick { lower, upper };
-        self.descend_to(&Within { region, range }, emit);
-    }
-
-    fn descend_to(&self, within: &Within, mut emit: impl FnMut(usize)) {
-        self.descend((self.whole(), Brick::OPEN), within, &mut emit);
     }
 
     /// Tells the ranks of a slab, and of a part of space, that are within a range.

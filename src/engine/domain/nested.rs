@@ -286,23 +286,6 @@ impl NestedSlabs {
         &mut self.faces
     }
 
-    /// The slab that a position (m) is in after so many levels of cuts, or before if nothing cuts it
-    /// further.
-    #[inline]
-    pub(super) fn slab_at(&self, position: &[f64; 3], cuts: usize) -> Slab {
-        let (mut slab, mut cut) = (self.whole(), self.first);
-        for (level, &axis) in self.axes[..cuts].iter().enumerate() {
-            if !slab.is_cut() {
-                break;
-            }
-            if level > 0 {
-                cut = slab.cut();
-            }
-            slab = cut.part(cut.part_at(position[axis], &self.faces));
-        }
-        slab
-    }
-
     fn sort(&mut self, slab: Slab) {
         if !slab.is_cut() {
             return;
@@ -327,8 +310,19 @@ impl NestedSlabs {
 }
 
 impl Decomposition for NestedSlabs {
+    #[inline]
     fn owner(&self, position: &[f64; 3]) -> usize {
-        self.slab_at(position, self.levels).first
+        let (mut slab, mut cut) = (self.whole(), self.first);
+        for (level, &axis) in self.axes[..self.levels].iter().enumerate() {
+            if !slab.is_cut() {
+                break;
+            }
+            if level > 0 {
+                cut = slab.cut();
+            }
+            slab = cut.part(cut.part_at(position[axis], &self.faces));
+        }
+        slab.first
     }
 
     fn region(&self, rank: usize) -> Brick {

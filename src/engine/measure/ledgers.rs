@@ -65,6 +65,7 @@ fn totals(part: &Totals, whole: Whole) -> Totals {
 
 fn pair(part: &PairState, whole: Whole) -> PairState {
     PairState {
+        bodies: part.bodies,
         force: whole.momentum(part.force),
         impulse: whole.momentum(part.impulse),
         energy: whole.sum(part.energy),

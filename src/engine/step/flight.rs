@@ -45,6 +45,8 @@ pub(super) struct FlightInputs<'a> {
 struct Search {
     /// By set of particles and thread.
     parts: Vec<Vec<Span>>,
+    /// Of bodies and their images, by their lower ends.
+    ways: Vec<Way>,
     meetings: Vec<Meeting>,
     /// By body, which sides of meetings are its own.
     sides: Vec<Vec<usize>>,
@@ -58,6 +60,30 @@ struct Meeting {
     mirror_mask: MirrorMask,
     h: f64,
     spans: [Span; 2],
+}
+
+/// The part of the x axis within reach of a body, or of an image of it, in a step.
+#[derive(Debug, Clone, Copy)]
+struct Way {
+    body: usize,
+    mirror_mask: MirrorMask,
+    /// Its ends (m).
+    lower: f64,
+    upper: f64,
+}
+
+impl Way {
+    /// Of the extent of a body or an image in a step `dt` (s), with contact of some range (m).
+    fn new(body: usize, mirror_mask: MirrorMask, span: &Span, (dt, range): (f64, f64)) -> Self {
+        let [lower, upper] = span.bounds();
+        let [[slowest, fastest], ..] = span.velocities();
+        Self {
+            body,
+            mirror_mask,
+            lower: lower[0] + (slowest * dt).min(0.0) - range,
+            upper: upper[0] + (fastest * dt).max(0.0) + range,
+        }
+    }
 }
 
 impl Meeting {
@@ -75,12 +101,8 @@ impl Meeting {
 
 impl Flight {
     pub fn new(contact: &ContactTable) -> Self {
-        let pairs = contact.active_pairs().into_iter();
-        let apart = pairs.filter(|[a, b]| a != b);
         Self {
-            shortest: apart
-                .filter_map(|[a, b]| contact.between(a, b))
-                .fold(f64::INFINITY, |h, pair| h.min(pair.h)),
+            shortest: contact.shortest(),
             ..Self::default()
         }
     }
@@ -152,6 +174,7 @@ impl Search {
         let parts = self.parts.iter().map(Vec::capacity).sum::<usize>();
         let sides = self.sides.iter().map(Vec::capacity).sum::<usize>();
         size_of::<Span>() * parts
+            + size_of::<Way>() * self.ways.capacity()
             + size_of::<Meeting>() * self.meetings.capacity()
             + size_of::<usize>() * sides
             + size_of::<u64>() * self.words.capacity()
@@ -261,21 +284,52 @@ impl Search {
     /// Lists the bodies that limit a step `dt` (s), given the extent of each of them.
     fn pair(&mut self, inputs: &FlightInputs, dt: f64) {
         let (mirrors, bodies) = (inputs.mirrors, inputs.case.bodies.len());
-        let (spans, meetings) = (&self.parts[0], &mut self.meetings);
+        let (spans, meetings) = (&self.parts[0][..bodies], &mut self.meetings);
+        let ways = &mut self.ways;
+        ways.clear();
+        let range = inputs.table.longest_range();
+        let flying = spans
+            .iter()
+            .enumerate()
+            .filter(|(_, span)| !span.is_empty());
+        for (body, span) in flying {
+            ways.extend(mirrors.masks().map(|mirror_mask| {
+                let image = span.reflected(mirrors, mirror_mask);
+                Way::new(body, mirror_mask, &image, (dt, range))
+            }));
+        }
+        ways.sort_unstable_by(|one, next| {
+            let by_place = one.lower.total_cmp(&next.lower);
+            by_place
+                .then((one.body, one.mirror_mask.bits()).cmp(&(next.body, next.mirror_mask.bits())))
+        });
         meetings.clear();
-        for a in 0..bodies {
-            for b in a + 1..bodies {
-                let Some(pair) = inputs.table.between(a, b) else {
+        for (k, one) in ways.iter().enumerate() {
+            let near = ways[k + 1..]
+                .iter()
+                .take_while(|other| other.lower <= one.upper);
+            for other in near {
+                // The first body itself, and the second one or an image of it.
+                let (own, image) = if one.body < other.body {
+                    (one, other)
+                } else {
+                    (other, one)
+                };
+                if own.body == image.body || !own.mirror_mask.is_own() {
+                    continue;
+                }
+                let Some(pair) = inputs.table.between(own.body, image.body) else {
                     continue;
                 };
-                let meet = |mirror_mask| Meeting {
-                    bodies: [a, b],
-                    mirror_mask,
+                let meeting = Meeting {
+                    bodies: [own.body, image.body],
+                    mirror_mask: image.mirror_mask,
                     h: pair.h,
-                    spans: [spans[a], spans[b]],
+                    spans: [spans[own.body], spans[image.body]],
                 };
-                let all = mirrors.masks().map(meet);
-                meetings.extend(all.filter(|meeting| meeting.longest_step(mirrors) < dt));
+                if meeting.longest_step(mirrors) < dt {
+                    meetings.push(meeting);
+                }
             }
         }
     }

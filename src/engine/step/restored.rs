@@ -1,7 +1,7 @@
 //! Checks of a saved state before a step relies on it: a file may come from anybody.
 
 use super::error::SetupError;
-use crate::diagnose::RunState;
+use crate::diagnose::{PairState, RunState};
 use crate::loads::Loads;
 use crate::measure::Measures;
 use comm::Comm;
@@ -31,10 +31,9 @@ pub(super) fn require_own(
     particles: &ParticleStore,
 ) -> Result<(), SetupError> {
     let (own, bodies) = (beginning.state, beginning.case.bodies.len());
-    let ledgers = |state: &RunState| [state.pairs.len(), state.loads.len()];
     let checks: [Check; 9] = [
         ("it has other pairs of bodies or loads", &|| {
-            ledgers(state) != ledgers(own)
+            !are_pairs(beginning.case, &state.pairs) || state.loads.len() != own.loads.len()
         }),
         ("it has particles removed from other bodies", &|| {
             let ledgers = [&state.removed, &state.departed];
@@ -80,6 +79,20 @@ pub(super) fn require_own(
         Some((what, _)) => Err(SetupError::Foreign(what)),
         None => Ok(()),
     }
+}
+
+/// True if these are ledgers of different pairs of bodies that have contact, in order.
+fn are_pairs(case: &Case, pairs: &[PairState]) -> bool {
+    let all = case.bodies.len();
+    let is_one = |pair: &PairState| {
+        let [a, b] = pair.bodies;
+        let touches = || match a == b {
+            true => case.self_contact.is_some(),
+            false => case.contact_between(a, b).class().is_some(),
+        };
+        a <= b && b < all && touches()
+    };
+    pairs.iter().all(is_one) && pairs.is_sorted_by(|one, next| one.bodies < next.bodies)
 }
 
 /// All counts of a state, negative ones as very large.

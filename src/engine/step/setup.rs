@@ -37,16 +37,16 @@ pub(super) fn populate(
 ) -> Result<(), SetupError> {
     let brick = partition.slabs().region(comm.rank());
     let stressed = case.sph.form == SphForm::StressPoints;
-    let count = |body| {
+    let counts = populate::counts(case, Some(brick));
+    let points = |body| {
         let (dimension, planes) = (case.dimension, &case.symmetry);
-        let points = if stressed {
+        if stressed {
             populate::stress_count(body, dimension, planes, Some(brick))
         } else {
             0
-        };
-        points + populate::count(body, dimension, planes, Some(brick))
+        }
     };
-    let total: u64 = case.bodies.iter().map(count).sum();
+    let total = counts.iter().sum::<u64>() + case.bodies.iter().map(points).sum::<u64>();
     limit_count(comm, total)?;
     particles.resize_owned(usize::try_from(total).unwrap_or(usize::MAX));
     let mut filling = Filling {
@@ -58,7 +58,7 @@ pub(super) fn populate(
         first_id: 0,
         unsound: None,
     };
-    filling.create_particles(stressed)?;
+    filling.create_particles(&counts, stressed)?;
     if stressed {
         filling.create_stress_points()?;
     }
@@ -73,17 +73,18 @@ pub(super) fn populate(
 
 impl Filling<'_> {
     /// Creates the particles of all bodies.
-    fn create_particles(&mut self, stressed: bool) -> Result<(), SetupError> {
+    fn create_particles(&mut self, counts: &[u64], stressed: bool) -> Result<(), SetupError> {
         let Self {
             case,
             loads,
             particles,
             ..
         } = self;
-        for (b, body) in case.bodies.iter().enumerate() {
+        populate::for_each_body(case, Some(self.brick), counts, |b, sites| {
+            let body = &case.bodies[b];
             // Heat and plastic strain of bodies with stress points are those of the points.
             let start = Start::new(case, b, !stressed);
-            for site in populate::sites(body, case.dimension, &case.symmetry, Some(self.brick)) {
+            for site in sites {
                 let (i, id) = (self.next, self.first_id + site.index);
                 if let Err(why) = start.put(particles, i, id, site.position, site.index) {
                     self.unsound.get_or_insert((id, why));
@@ -105,8 +106,8 @@ impl Filling<'_> {
                 self.next += 1;
             }
             self.first_id = beyond(self.first_id, populate::index_end(body, case.dimension))?;
-        }
-        Ok(())
+            Ok(())
+        })
     }
 
     /// Creates the stress points of all bodies.

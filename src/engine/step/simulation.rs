@@ -15,8 +15,7 @@ use super::space::Space;
 use super::timers::{Phase, Timers};
 use crate::contact::{Contact, ContactTable};
 use crate::diagnose::{
-    Booked, Leave, LoadState, NumericalFailure, PairState, Passed, Reason, Removed, RunState,
-    Votes, Worst,
+    Booked, Leave, LoadState, NumericalFailure, Passed, Reason, Removed, RunState, Votes, Worst,
 };
 use crate::domain::{Halo, InitialLayout, NestedSlabs, Partition};
 use crate::loads::Loads;
@@ -129,7 +128,6 @@ impl Simulation {
             removal: Removal::new(&particles),
             particles,
             state: RunState {
-                pairs: vec![PairState::default(); table.active_pairs().len()],
                 loads: vec![LoadState::default(); case.load_names().count()],
                 passed: vec![Passed::default(); accounts.measures.witnesses.ledgers()],
                 total: case.bodies.iter().map(|body| body.total).collect(),

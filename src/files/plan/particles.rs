@@ -1,5 +1,7 @@
 //! Positions and ranges of particles.
 
+use std::convert::Infallible;
+
 use engine::sph::Smoothing;
 use model::{Body, Case, Quantity, SphForm, edge};
 use populate;
@@ -21,22 +23,25 @@ impl Particles {
     pub fn at_start(case: &Case) -> Self {
         let smoothing = Smoothing::new(case);
         let mut particles = Self::default();
-        for (b, body) in case.bodies.iter().enumerate() {
+        let counts = populate::counts(case, None);
+        let Ok(()) = populate::for_each_body(case, None, &counts, |b, sites| {
+            let body = &case.bodies[b];
             let whole = case.particle_mass(body);
-            for site in populate::sites(body, case.dimension, &case.symmetry, None) {
+            for site in sites {
                 let mass = mass_in_file(body, site.index).unwrap_or(whole * site.share);
                 let length = body.smoothing_length * edge(site.share, case.dimension);
                 particles.add(b, site.position, smoothing.reach_of(b, mass, length));
             }
             if case.sph.form != SphForm::StressPoints {
-                continue;
+                return Ok::<(), Infallible>(());
             }
             // Stress points have no mass of their own.
             let reach = smoothing.reach_of(b, 0.0, body.smoothing_length);
             for site in populate::stress_sites(body, case.dimension, &case.symmetry, None) {
                 particles.add(b, site.position, reach);
             }
-        }
+            Ok(())
+        });
         particles
     }
 

@@ -158,10 +158,17 @@ impl Ranges {
             strain: Range::NONE,
         };
         let alike = !body.initial.varies() && body.speed_spread() == 0.0 && body.cloud().is_none();
-        let (sites, _) = populate::sample(body, case.dimension, &case.symmetry, most);
-        for site in sites.take(if alike { 1 } else { usize::MAX }) {
-            ranges.include(case, body, &site);
+        if alike {
+            let any = Site {
+                position: body.shape.centre().into(),
+                index: 0,
+                share: 1.0,
+            };
+            ranges.include(case, body, &any);
+            return ranges;
         }
+        let (sites, _) = populate::sample(body, case.dimension, &case.symmetry, most);
+        sites.for_each(|site| ranges.include(case, body, &site));
         ranges
     }
 

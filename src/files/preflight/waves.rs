@@ -3,10 +3,12 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::approach::{Approach, Ends, flies_straight};
 use material::Rest;
 use model::{Body, Case, Heat, SphForm, Vec3};
-use populate;
+use populate::{self, Brick, Site};
 
 /// Distance of not negligible values ahead of sound, in spacings, measured in the quarter impact.
 const AHEAD: f64 = 16.0;
@@ -150,14 +152,25 @@ impl Waves {
         // Of very many bodies some stand for all.
         let stride = looks.div_ceil(MOST_LOOKS);
         let samples = (MOST_LOOKS * stride / looks.max(1)).clamp(1, SAMPLES);
-        for (b, body) in case.bodies.iter().enumerate().step_by(stride.max(1)) {
-            let (dimension, planes) = (case.dimension, &case.symmetry);
-            let count = as_number(populate::count(body, dimension, planes, None));
-            let (sites, _) = populate::sample(body, dimension, planes, samples as u64);
-            let waiting: Vec<Waiting> = sites
-                .map(|site| self.waiting(b, &site.position, &times))
-                .collect();
-            work += count * mean_work(&waiting);
+        let bodies: Vec<usize> = (0..bodies).step_by(stride.max(1)).collect();
+        let of_body = |&b: &usize| {
+            let (body, dimension, planes) = (&case.bodies[b], case.dimension, &case.symmetry);
+            let count = populate::count(body, dimension, planes, None);
+            let mut waiting = Vec::new();
+            let look = |site: Site| waiting.push(self.waiting(b, &site.position, &times));
+            if count <= samples as u64 {
+                // Nearly where they begin is near enough.
+                populate::emit_unfitted((body, dimension, planes), Brick::OPEN, look);
+            } else {
+                let (sites, _) = populate::sample(body, dimension, planes, samples as u64);
+                sites.for_each(look);
+            }
+            let count = as_number(count);
+            (count, count * mean_work(&waiting))
+        };
+        let each: Vec<(f64, f64)> = bodies.par_iter().map(of_body).collect();
+        for (count, moving) in each {
+            work += moving;
             all += count;
         }
         if all > 0.0 { work / all } else { 1.0 }

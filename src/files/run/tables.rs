@@ -215,12 +215,9 @@ impl Tables {
             if table.is_of_whole() { whole } else { state }
         };
         self.write_history(case, told(&self.history))?;
-        let pairs = simulation.contact().active_pairs();
-        for (bodies, pair) in pairs.iter().zip(&told(&self.contacts).pairs) {
-            if !pair.has_met() {
-                continue;
-            }
-            let names = bodies.map(|b| case.bodies[b].name.as_str());
+        let pairs = told(&self.contacts).pairs.iter();
+        for pair in pairs.filter(|pair| pair.has_met()) {
+            let names = pair.bodies.map(|b| case.bodies[b].name.as_str());
             self.contacts.row(&contact(state.time, names, pair))?;
         }
         if let Some(table) = &mut self.loads {

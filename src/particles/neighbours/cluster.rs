@@ -71,6 +71,17 @@ impl Cluster {
     }
 }
 
+/// The box (m) around all receivers of some clusters; an empty one without any.
+pub(super) fn around<'a>(clusters: impl Iterator<Item = &'a Cluster>) -> ([f64; 3], [f64; 3]) {
+    let none = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    clusters.fold(none, |(lower, upper), cluster| {
+        (
+            std::array::from_fn(|a| lower[a].min(cluster.lower[a])),
+            std::array::from_fn(|a| upper[a].max(cluster.upper[a])),
+        )
+    })
+}
+
 /// Neighbours that a cluster of several may have.
 const FEW: usize = 32;
 

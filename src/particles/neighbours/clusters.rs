@@ -1,11 +1,13 @@
 //! Lists of the own group's neighbours for clusters of eight receivers.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::cluster::{Among, Cluster, Lists};
+use super::cluster::{Among, Cluster, Lists, around};
 use super::facts::{HALO, MIRROR, MOVING};
+use super::foreign::GroupRanges;
 use super::fragments::{Membership, Split};
 use super::gather::Gatherer;
 use super::near::{INFLATION, near_box, push_places};
@@ -70,7 +72,7 @@ struct Build<'a> {
     sources: usize,
     sequence: &'a Sequence,
     lengths: Lengths,
-    ranges: &'a [f64],
+    ranges: Option<&'a GroupRanges>,
     spared: bool,
 }
 
@@ -115,11 +117,17 @@ impl Vectorised for Build<'_> {
             used: 0,
             hints: [0; 64],
         };
+        let (lower, upper) = around(clusters.iter());
+        let far = lengths.range();
+        let contact = self.ranges.map_or(0.0, GroupRanges::longest) * INFLATION;
+        let mut groups = GROUPS.take();
+        sequence.list_groups_near((&lower, &upper), 2.0 * far + contact, &mut groups);
         let mut watch = Watch {
             sequence,
             group: *group,
             ranges: self.ranges,
-            far: lengths.range(),
+            groups: &groups,
+            far,
             hints: [0; 64],
         };
         for run in runs(clusters, LONG * watch.far) {
@@ -135,7 +143,13 @@ impl Vectorised for Build<'_> {
                 ends.push((lister.used as u32, among));
             }
         }
+        GROUPS.set(groups);
     }
+}
+
+thread_local! {
+    /// Groups of which images are near a chunk, for one after the other.
+    static GROUPS: RefCell<Vec<usize>> = RefCell::default();
 }
 
 /// Clusters in a row that are looked at together, whether they rest.
@@ -277,13 +291,13 @@ impl ClusterLists {
 
     /// Groups this rank's own particles into clusters and lists the neighbours of each.
     /// `lengths` are the smoothing lengths of each group. Clusters rest that are among what
-    /// rests and far from other groups: `ranges[own * groups + other]` is the longest range (m) of
-    /// contact between two, if there is any contact. They get empty lists if these are `spared`.
+    /// rests and far from other groups, by the `ranges` of contact, if there is any contact. They get empty lists if these
+    /// are `spared`.
     pub fn build(
         &mut self,
         sequence: &Sequence,
         lengths: &[Lengths],
-        (ranges, spared): (&[f64], bool),
+        (ranges, spared): (Option<&GroupRanges>, bool),
     ) {
         let set = instructions();
         self.lay_out(sequence);

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use rayon::prelude::*;
 
-use super::cluster::Cluster;
+use super::cluster::{Cluster, around};
 use super::clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists};
 use super::motion::MotionRecord;
 use super::near::{INFLATION, near_box, push_places, splat_each};
@@ -25,12 +25,58 @@ pub struct ForeignTable {
     pub class: Vec<Option<ContactClass>>,
     /// Squared range of contact (m²), in the same order.
     pub reach2: Vec<f64>,
-    /// `range[g * groups + o]`: largest range (m) between bodies of the groups g and o; zero
-    /// where these have no contact.
-    pub group_range: Vec<f64>,
+    /// Largest ranges between bodies of two groups.
+    pub ranges: GroupRanges,
     /// Bound where particles of a body are unequal: no pair has a longer range than so many times
     /// the sum of its smoothing lengths.
     pub most: Option<f64>,
+}
+
+/// Largest ranges of contact between groups, of which those that are alike are kept once.
+#[derive(Debug, Clone)]
+pub struct GroupRanges {
+    /// The kind of each group.
+    kinds: Vec<usize>,
+    count: usize,
+    /// Range (m) of each ordered pair of kinds; zero without contact.
+    ranges: Vec<f64>,
+    longest: f64,
+}
+
+impl GroupRanges {
+    /// Of groups of these kinds, below a number, without contact.
+    #[must_use]
+    pub fn new(kinds: Vec<usize>, count: usize) -> Self {
+        Self {
+            kinds,
+            count,
+            ranges: vec![0.0; count * count],
+            longest: 0.0,
+        }
+    }
+
+    /// Lets groups of the kinds of two groups have contact within a range (m), or more.
+    pub fn widen(&mut self, group: usize, other: usize, range: f64) {
+        let widest = &mut self.ranges[self.kinds[group] * self.count + self.kinds[other]];
+        *widest = widest.max(range);
+        self.longest = self.longest.max(range);
+    }
+
+    /// Range (m) of contact between two groups; zero without, and of a group with itself.
+    #[inline(always)]
+    #[must_use]
+    pub fn between(&self, group: usize, other: usize) -> f64 {
+        if group == other {
+            return 0.0;
+        }
+        self.ranges[self.kinds[group] * self.count + self.kinds[other]]
+    }
+
+    /// The longest range (m) of all.
+    #[must_use]
+    pub fn longest(&self) -> f64 {
+        self.longest
+    }
 }
 
 /// The foreign pairs of one task, one list for each mode of contact.
@@ -39,9 +85,19 @@ pub struct ForeignChunk {
     lists: [PairList; ContactClass::COUNT],
 }
 
+/// Buffers of a thread, for one chunk after the other.
+#[derive(Debug, Default)]
+struct Buffers {
+    /// Groups of which images are near the chunk.
+    groups: Vec<usize>,
+    /// Images that are near a cluster.
+    near: Candidates,
+    /// Strangers of a receiver.
+    apart: Candidates,
+}
+
 thread_local! {
-    /// Buffers of a thread, for one chunk after the other: images that are near, and strangers.
-    static CANDIDATES: RefCell<[Candidates; 2]> = RefCell::default();
+    static BUFFERS: RefCell<Buffers> = RefCell::default();
 }
 
 /// Images that may be in range of a receiver, eight at a time.
@@ -126,12 +182,21 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
         chunk.lists.iter_mut().for_each(PairList::clear);
         let mut hints = [0; 64];
         let mut strangers = self.own.strangers().iter().peekable();
-        let [mut near, mut apart] = CANDIDATES.take();
+        let mut buffers = BUFFERS.take();
+        let Buffers {
+            groups,
+            near,
+            apart,
+        } = &mut buffers;
+        let (lower, upper) = around(self.own.iter().map(|(cluster, ..)| cluster));
+        let range = self.table.ranges.longest() * INFLATION;
+        self.sequence
+            .list_groups_near((&lower, &upper), range, groups);
         for (cluster, _, among) in self.own.iter() {
             if among.resting {
                 continue;
             }
-            near.find::<V>(cluster, self.sequence, self.table, &mut hints);
+            near.find::<V>(cluster, groups, self.sequence, self.table, &mut hints);
             if near.used == 0 && strangers.peek().is_none() {
                 continue;
             }
@@ -144,13 +209,13 @@ impl<B: Fn(u32) -> usize> Vectorised for Find<'_, B> {
                 if let Some((_, list)) = strangers.next_if(|(at, _)| *at == receiver) {
                     apart.take(list);
                     apart.look_up(self.sources, self.size_class_of);
-                    chunk.add_near::<V>(&here, &mut apart, self.table);
+                    chunk.add_near::<V>(&here, apart, self.table);
                 }
-                chunk.add_near::<V>(&here, &mut near, self.table);
+                chunk.add_near::<V>(&here, near, self.table);
                 chunk.close(receiver);
             }
         }
-        CANDIDATES.set([near, apart]);
+        BUFFERS.set(buffers);
     }
 }
 
@@ -160,20 +225,20 @@ struct Receiver<'a> {
 }
 
 impl Candidates {
-    /// Lists what may be in range of any receiver of a cluster. `hints` are as in the lists of
+    /// Lists what may be in range of any receiver of a cluster, of groups near it. `hints` are as in the lists of
     /// the own group.
     #[inline(always)]
     fn find<V: Lanes>(
         &mut self,
         cluster: &Cluster,
+        groups: &[usize],
         sequence: &Sequence,
         table: &ForeignTable,
         hints: &mut [usize; 64],
     ) {
         self.used = 0;
-        let groups = sequence.groups();
-        let range_of = |other| table.group_range[cluster.group * groups + other] * INFLATION;
-        for other in 0..groups {
+        let range_of = |other| table.ranges.between(cluster.group, other) * INFLATION;
+        for &other in groups {
             let range = range_of(other);
             if range == 0.0 {
                 continue;

@@ -300,7 +300,7 @@ impl Lists {
         if self.is_variable {
             self.measure_lengths();
         }
-        let ranges = contact.map_or(&[][..], |table| &table.group_range);
+        let ranges = contact.map(|table| &table.ranges);
         self.clusters
             .build(&self.sequence, &self.lengths, (ranges, spared));
     }

@@ -25,7 +25,7 @@ pub use cluster::{Among, Cluster};
 pub use clusters::{CHUNKS_AT_ONCE, Chunk, ClusterLists, Lengths};
 pub use columns::ColumnGrid;
 pub use facts::{ImageFacts, ImageState};
-pub use foreign::{ForeignChunk, ForeignLists, ForeignTable};
+pub use foreign::{ForeignChunk, ForeignLists, ForeignTable, GroupRanges};
 pub use fragments::{Fragment, Membership};
 pub use groups::Groups;
 pub use lists::Lists;

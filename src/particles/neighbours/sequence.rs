@@ -30,6 +30,8 @@ pub struct Sequence {
     uniform: bool,
     /// Number of images that are no particles of this rank themselves.
     others: usize,
+    /// Groups that have images, by the lower end of their boxes along x, and the longest of those along it (m).
+    along_x: (Vec<u32>, f64),
     sorter: Sorter,
 }
 
@@ -130,6 +132,53 @@ impl Sequence {
                 &emit,
             );
         }
+        self.sort_groups();
+    }
+
+    fn sort_groups(&mut self) {
+        let Self {
+            groups,
+            along_x: (order, longest),
+            ..
+        } = self;
+        order.clear();
+        let filled = (0..)
+            .zip(&*groups)
+            .filter(|(_, group)| !group.images.is_empty());
+        order.extend(filled.map(|(place, _)| place));
+        let group = |place: &u32| &groups[*place as usize];
+        order.sort_unstable_by(|a, b| group(a).lower[0].total_cmp(&group(b).lower[0]));
+        let lengths = order
+            .iter()
+            .map(|place| group(place).upper[0] - group(place).lower[0]);
+        *longest = lengths.fold(0.0, f64::max);
+    }
+
+    /// Lists, ascending, the groups of which images may be within a range (m) of a box between two corners (m).
+    pub(super) fn list_groups_near(
+        &self,
+        (lower, upper): (&[f64; 3], &[f64; 3]),
+        range: f64,
+        near: &mut Vec<usize>,
+    ) {
+        let (order, longest) = &self.along_x;
+        let group = |place: &u32| &self.groups[*place as usize];
+        // Somewhat farther than any rounding.
+        let farthest = (range + longest) * (1.0 + 1e-9);
+        let first = order.partition_point(|place| group(place).lower[0] < lower[0] - farthest);
+        near.clear();
+        for place in &order[first..] {
+            let other = group(place);
+            if other.lower[0] > upper[0] + range {
+                break;
+            }
+            let apart =
+                |a: usize| lower[a] - range > other.upper[a] || other.lower[a] > upper[a] + range;
+            if !(0..3).any(apart) {
+                near.push(*place as usize);
+            }
+        }
+        near.sort_unstable();
     }
 
     /// Eight coordinates on an axis (m) from a place on; what lies beyond the last image is
@@ -232,6 +281,7 @@ impl Sequence {
             + 24 * self.coordinates[0].capacity()
             + 8 * self.lengths.capacity()
             + 32 * self.walls.capacity()
+            + 4 * self.along_x.0.capacity()
             + self.sorter.memory()
     }
 

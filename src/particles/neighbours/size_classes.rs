@@ -1,7 +1,10 @@
-//! Size classes of particles, as contact tells them apart: bodies, and classes of size where the particles
-//! of a body are unequal.
+//! Size classes of particles, as contact tells them apart: bodies, those that are alike together, and classes of size where
+//! the particles of a body are unequal.
 
-use model::{Body, Case, SmoothingLength, cube};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use model::{Body, Case, Heat, Shape, SmoothingLength, cube};
 
 /// Sizes of a class are this many times those of the one before,
 const STEP: f64 = 1.05;
@@ -14,15 +17,18 @@ fn step(body: &Body) -> f64 {
     STEP.max(libm::pow(most / least, 1.0 / (MOST_CLASSES - 1.0)))
 }
 
-/// The size classes of a case. Bodies whose particles are alike have one size class each.
+/// The size classes of a case. Bodies whose particles are equal have one size class, which bodies share that contact
+/// takes alike.
 #[derive(Debug, Clone, Default)]
 pub struct SizeClasses {
-    /// The first size class of each body, and at last how many size classes there are.
-    first: Vec<usize>,
+    /// The size classes of each body.
+    of_body: Vec<Range<usize>>,
     /// Mass (kg) from which on a particle is of the next size class of its body.
     limits: Vec<f64>,
-    /// Body of each size class.
+    /// The first body of each size class.
     body: Vec<usize>,
+    /// True if other bodies share a size class.
+    shared: Vec<bool>,
     /// Size of its particles against the spacing of the body.
     size: Vec<f64>,
 }
@@ -31,11 +37,19 @@ impl SizeClasses {
     /// Of a case.
     #[must_use]
     pub fn new(case: &Case) -> Self {
-        let mut size_classes = Self {
-            first: vec![0],
-            ..Self::default()
-        };
+        let mut size_classes = Self::default();
+        let alike = Alike::new(case);
+        let mut known = BTreeMap::new();
         for (b, body) in case.bodies.iter().enumerate() {
+            let first = size_classes.count();
+            if let Some(key) = alike.key(b) {
+                let class = *known.entry(key).or_insert(first);
+                if class < first {
+                    size_classes.shared[class] = true;
+                    size_classes.of_body.push(class..class + 1);
+                    continue;
+                }
+            }
             let [least, most] = body.lattice.sizes.unwrap_or([1.0; 2]);
             let step = step(body);
             let mass = case.particle_mass(body);
@@ -44,13 +58,15 @@ impl SizeClasses {
                 let limit = size * step.sqrt();
                 size_classes.body.push(b);
                 size_classes.size.push(size);
+                size_classes.shared.push(false);
                 size_classes.limits.push(mass * cube(limit, case.dimension));
                 if limit >= most {
                     break;
                 }
                 size *= step;
             }
-            size_classes.first.push(size_classes.body.len());
+            let end = size_classes.count();
+            size_classes.of_body.push(first..end);
         }
         size_classes
     }
@@ -59,7 +75,8 @@ impl SizeClasses {
     #[must_use]
     pub fn of_bodies(count: usize) -> Self {
         Self {
-            first: (0..=count).collect(),
+            of_body: (0..count).map(|body| body..body + 1).collect(),
+            shared: vec![false; count],
             limits: vec![f64::INFINITY; count],
             body: (0..count).collect(),
             size: vec![1.0; count],
@@ -86,14 +103,20 @@ impl SizeClasses {
     /// Of how many bodies.
     #[must_use]
     pub fn bodies(&self) -> usize {
-        self.first.len() - 1
+        self.of_body.len()
+    }
+
+    /// True if several bodies share a size class.
+    #[must_use]
+    pub fn is_shared(&self, size_class: usize) -> bool {
+        self.shared[size_class]
     }
 
     /// The size class of a particle of a body with a mass (kg).
     #[inline(always)]
     #[must_use]
     pub fn of(&self, body: usize, mass: f64) -> usize {
-        let (first, end) = (self.first[body], self.first[body + 1]);
+        let Range { start: first, end } = self.of_body[body];
         if end - first == 1 {
             return first;
         }
@@ -104,10 +127,10 @@ impl SizeClasses {
     /// The size class of a body that has the smallest particles.
     #[must_use]
     pub fn smallest(&self, body: usize) -> usize {
-        self.first[body]
+        self.of_body[body].start
     }
 
-    /// The body of a size class.
+    /// The first body of a size class.
     #[must_use]
     pub fn body(&self, size_class: usize) -> usize {
         self.body[size_class]
@@ -120,5 +143,65 @@ impl SizeClasses {
         body.lattice.spacing *= self.size[size_class];
         body.smoothing_length *= self.size[size_class];
         body
+    }
+}
+
+/// What makes bodies alike for contact.
+struct Alike<'a> {
+    case: &'a Case,
+    /// Bodies that a load or a pair names.
+    named: Vec<bool>,
+    /// True if bodies differ for their velocities.
+    by_velocity: bool,
+}
+
+/// Equal for bodies that are alike: the surfaces that act on them, their material and filling, bits of lengths, densities
+/// and velocities.
+type Key = (Vec<bool>, [usize; 2], [u64; 6]);
+
+impl<'a> Alike<'a> {
+    fn new(case: &'a Case) -> Self {
+        let all = case.bodies.len();
+        let mut named = vec![false; all];
+        let pairs = case.contacts.iter().flat_map(|pair| pair.bodies);
+        let loads = case.loads.velocities.iter().map(|load| load.body);
+        for body in pairs.chain(loads) {
+            named[body] = true;
+        }
+        Self {
+            case,
+            named,
+            by_velocity: case.meets_fast(),
+        }
+    }
+
+    /// Of a body, unless it is like no other.
+    fn key(&self, index: usize) -> Option<Key> {
+        let (case, body) = (self.case, &self.case.bodies[index]);
+        // Fragments of one body meet as two bodies do, or not at all.
+        let own = case.self_contact.as_ref();
+        let is_own_mode = own.is_none_or(|own| own.mode() == case.default_contact);
+        let is_plain = body.rigid.is_none()
+            && body.lattice.sizes.is_none()
+            && body.initial.heat == Heat::Reference
+            && body.cloud().is_none()
+            && (!self.by_velocity || body.speed_spread() == 0.0);
+        if self.named[index] || !is_own_mode || !is_plain {
+            return None;
+        }
+        let velocity: [f64; 3] = if self.by_velocity {
+            body.velocity.into()
+        } else {
+            [0.0; 3]
+        };
+        let [x, y, z] = velocity.map(f64::to_bits);
+        let density = body.density.map_or(u64::MAX, f64::to_bits);
+        let [spacing, length] = [body.lattice.spacing, body.smoothing_length].map(f64::to_bits);
+        let surfaces = case.loads.surfaces.iter();
+        let acting = surfaces.map(|surface| surface.bodies[index]).collect();
+        let lattice = &body.lattice;
+        let turned = usize::from(lattice.axis.is_some() || matches!(body.shape, Shape::Solid(_)));
+        let kinds = [body.material, 2 * lattice.kind as usize + turned];
+        Some((acting, kinds, [spacing, length, density, x, y, z]))
     }
 }

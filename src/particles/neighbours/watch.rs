@@ -2,6 +2,7 @@
 
 use super::cluster::Cluster;
 use super::facts::{ACTIVE, HALO, MOVING};
+use super::foreign::GroupRanges;
 use super::near::INFLATION;
 use super::sequence::Sequence;
 use numerics::lanes::{LANES, Lanes};
@@ -15,8 +16,10 @@ pub(super) struct Watch<'a> {
     pub(super) group: usize,
     /// Largest distance (m) of neighbours of the own group.
     pub(super) far: f64,
-    /// `ranges[own * groups + other]`: the longest range (m) of contact between two groups, if there is any contact.
-    pub(super) ranges: &'a [f64],
+    /// The longest range (m) of contact between two groups, if there is any contact.
+    pub(super) ranges: Option<&'a GroupRanges>,
+    /// The groups that may be near any of the clusters.
+    pub(super) groups: &'a [usize],
     /// Place at which the last box began to read columns, by the last bits of their indices.
     pub(super) hints: [usize; 64],
 }
@@ -45,13 +48,14 @@ impl Watch<'_> {
                 || other == self.group
                 || self.is_far::<V>(other, bounds, reach(other))
         };
-        (0..self.sequence.groups()).all(is_far) && self.rests_near::<V>(bounds, reach(self.group))
+        self.groups.iter().all(|&other| is_far(other))
+            && self.rests_near::<V>(bounds, reach(self.group))
     }
 
     /// Range of contact with a group (m).
     fn range(&self, other: usize) -> f64 {
-        let range = self.ranges.get(self.group * self.sequence.groups() + other);
-        range.copied().unwrap_or_default() * INFLATION
+        let range = self.ranges.map(|ranges| ranges.between(self.group, other));
+        range.unwrap_or_default() * INFLATION
     }
 
     /// True if all images of the own group near a box (m), by no more than `far` (m) along each axis, rest and belong

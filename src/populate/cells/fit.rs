@@ -125,7 +125,7 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
     };
     let numbers: Vec<u32> = moving.iter().map(|one| one.site).collect();
     let mut velocity = vec![[0.0; 3]; moving.len()];
-    let wall = Wall::new(cells.dimension);
+    let wall = Wall::of(cells.dimension);
     let outside = |position: &[f64; 3], size: f64| {
         let mut force = [0.0; 3];
         scale.faces(cells, position, REACH * size, |depth, normal| {
@@ -151,6 +151,7 @@ fn relax(cells: &Cells, sites: &mut [Site], moving: &[Moving]) {
     };
     for left in (0..STEPS).rev() {
         let end = moving.partition_point(|one| one.spared <= left);
+        crate::visits::add(end as u64);
         step(
             &mut of,
             &mut velocity[..end],

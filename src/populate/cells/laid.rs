@@ -320,6 +320,7 @@ impl Cells {
         if lie == Lie::Outside {
             return;
         }
+        crate::visits::add(1);
         let level = &self.levels[block.level];
         for number in self.numbers(block) {
             let site = self.site(block, number);

@@ -7,6 +7,8 @@
 //! density is 1/s³, the sum of `f(r/s̄) s_j/s_i` over all directions is zero to the first order in
 //! the slope of s, so that sites stay as dense as they are laid.
 
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use super::forces::{REACH, Sites};
@@ -26,9 +28,15 @@ pub(super) struct Wall {
 impl Wall {
     const ROWS: usize = 256;
 
+    /// In two or three dimensions.
+    pub fn of(dimension: usize) -> &'static Self {
+        static WALLS: [OnceLock<Wall>; 2] = [OnceLock::new(), OnceLock::new()];
+        WALLS[dimension - 2].get_or_init(|| Self::new(dimension))
+    }
+
     /// The pushes of a half-space sum to the integral of the function over its face.
     #[allow(clippy::cast_precision_loss)] // a few hundred
-    pub fn new(dimension: usize) -> Self {
+    fn new(dimension: usize) -> Self {
         let function = |r: f64| {
             let u = (r / REACH).min(1.0);
             {

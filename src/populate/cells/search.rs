@@ -1,5 +1,8 @@
 //! The sites where a function of place is smallest, block by block.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
 use super::fit::{LAYER, on_layer};
 use super::laid::{Block, Cells};
 use crate::Wanted;
@@ -12,6 +15,41 @@ struct Blocks<'a> {
     cells: &'a Cells,
     level: usize,
     cuts: &'a [Cut],
+    /// The sites (m) of blocks that have been looked at.
+    seen: RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>,
+}
+
+impl<'a> Blocks<'a> {
+    /// Of all levels.
+    fn all(cells: &'a Cells, cuts: &'a [Cut]) -> Vec<Self> {
+        let levels = 0..cells.levels.len();
+        levels
+            .map(|level| Self {
+                cells,
+                level,
+                cuts,
+                seen: RefCell::default(),
+            })
+            .collect()
+    }
+
+    /// The sites (m) of a block, those that are fitted where they end nearly.
+    fn sites(&self, at: [u64; 3]) -> Vec<[f64; 3]> {
+        let block = Block {
+            level: self.level,
+            at,
+        };
+        let sites = self.cells.sites_of(block, self.cuts).into_iter();
+        sites
+            .map(|site| {
+                if self.cells.is_fitted() {
+                    on_layer(self.cells, &site.position)
+                } else {
+                    site.position
+                }
+            })
+            .collect()
+    }
 }
 
 impl Parts for Blocks<'_> {
@@ -37,19 +75,10 @@ impl Parts for Blocks<'_> {
         (!is_cut && cells.solid.distance(&middle) <= half.norm()).then_some((lower, upper))
     }
 
-    /// Sites that are fitted where they end nearly.
-    fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
-        let block = Block {
-            level: self.level,
-            at,
-        };
-        for site in self.cells.sites_of(block, self.cuts) {
-            emit(if self.cells.is_fitted() {
-                on_layer(self.cells, &site.position)
-            } else {
-                site.position
-            });
-        }
+    fn emit(&self, at: [u64; 3], emit: impl FnMut([f64; 3])) {
+        let mut seen = self.seen.borrow_mut();
+        let sites = seen.entry(at).or_insert_with(|| self.sites(at));
+        sites.iter().copied().for_each(emit);
     }
 }
 
@@ -61,10 +90,19 @@ pub(crate) fn smallest(
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
+    smallest_of(&Blocks::all(cells, cuts), wanted, bound, value)
+}
+
+/// The same of blocks of all levels.
+fn smallest_of(
+    blocks: &[Blocks],
+    wanted: Wanted,
+    bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
+    value: impl Fn(&[f64; 3]) -> f64,
+) -> Vec<(f64, [f64; 3])> {
     let mut nearest: Vec<(f64, [f64; 3])> = Vec::new();
-    for level in 0..cells.levels.len() {
-        let blocks = Blocks { cells, level, cuts };
-        nearest.extend(best(&blocks, wanted, &bound, &value));
+    for level in blocks {
+        nearest.extend(best(level, wanted, &bound, &value));
         nearest.sort_by(|a, b| a.0.total_cmp(&b.0));
         nearest.truncate(wanted.most);
     }
@@ -91,13 +129,15 @@ pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
             0.0
         }
     };
+    // Of a small body all six searches look at the same blocks.
+    let blocks = Blocks::all(cells, cuts);
     let (mut lowest, mut highest) = ([0.0; 3], [0.0; 3]);
     for a in 0..cells.dimension {
         let low = |lower: &[f64; 3], upper: &[f64; 3]| lower[a].max(least[a] + layer(lower, upper));
         let high =
             |lower: &[f64; 3], upper: &[f64; 3]| -upper[a].min(most[a] - layer(lower, upper));
-        let low = smallest(cells, cuts, wanted, low, |x| x[a]);
-        let high = smallest(cells, cuts, wanted, high, |x| -x[a]);
+        let low = smallest_of(&blocks, wanted, low, |x| x[a]);
+        let high = smallest_of(&blocks, wanted, high, |x| -x[a]);
         lowest[a] = low.first()?.0;
         highest[a] = -high.first()?.0;
     }

@@ -93,6 +93,7 @@ impl Reader<'_> {
         }
         self.check_size(params, &bodies)?;
         touch::resolve(params, &mut bodies, self.dimension)?;
+        populate::fill(&mut bodies, self.dimension, symmetry);
         for (table, body) in params.iter().zip(&mut bodies) {
             self.check_particles(table.get_ref(), body, symmetry)?;
             body.lattice.volume = populate::even_volume(body, self.dimension, symmetry);
@@ -116,6 +117,7 @@ impl Reader<'_> {
             name: name.clone(),
             smoothing_length: self.smoothing * lattice.spacing,
             total: false,
+            filled: None,
             shape,
             material,
             lattice,

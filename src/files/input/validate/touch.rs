@@ -113,6 +113,7 @@ pub fn lay_on_planes(
     }
     if moved {
         resolve(params, bodies, dimension)?;
+        populate::fill(bodies, dimension, symmetry);
     }
     Ok(())
 }
@@ -170,6 +171,7 @@ fn translate(body: &mut Body, axis: Axis, distance: f64) {
     let mut way = Vec3::zeros();
     way[axis.index()] = distance;
     body.shape.translate(&way);
+    body.filled = None;
     if let Some(grading) = &mut body.lattice.grading {
         grading.from.translate(&way);
     }

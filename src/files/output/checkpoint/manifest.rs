@@ -8,7 +8,7 @@ use uuid::Uuid;
 use crate::output::{OutputError, ResultExtents, RunFolder, files};
 
 /// Number of the format; a reader takes its own only.
-pub const FORMAT: u64 = 1;
+pub const FORMAT: u64 = 2;
 /// The file that makes a folder a checkpoint.
 pub const MANIFEST: &str = "manifest.json";
 /// Advice on a damaged checkpoint.
