@@ -3,17 +3,18 @@
 
 use crate::cloud::{Cloud, Found, small as cloud};
 use crate::common::random::Random;
+use model::TermOptions;
 use numerics::dispatch::{Instructions, available};
 use numerics::kernel::{ConstantScale, Kernel, MeanScale, PairScale};
 use numerics::lanes::LANES;
-use particles::Mirrors;
 use particles::neighbours::Chunk;
 use particles::neighbours::MotionRecord;
+use particles::{Mirrors, Owner};
 use sums::momentum::{Forces, Momentum, StressRecord, Viscosity};
 use sums::neighbourhood::Sources;
 use sums::terms::artificial_stress::repulsion;
 use sums::terms::balsara::limiter;
-use sums::terms::{ARTIFICIAL_STRESS, BALSARA, CONDUCTION, PairTerms, RECORDED, TermRecord, XSPH};
+use sums::terms::{PairTerms, TermRecord};
 
 const VISCOSITY: Viscosity = Viscosity {
     alpha: 1.3,
@@ -24,7 +25,11 @@ const VISCOSITY: Viscosity = Viscosity {
 const RATIO: f64 = 0.8;
 const CONDUCTIVITY: f64 = 0.7;
 const EPSILON: f64 = 0.4;
-const ALL: u8 = RECORDED | XSPH;
+/// The terms of which particles show something.
+const RECORDED: Owner = Owner::ARTIFICIAL_STRESS
+    .union(Owner::BALSARA)
+    .union(Owner::CONDUCTION);
+const ALL: Owner = RECORDED.union(Owner::XSPH);
 
 /// What the sums read: numbers of order one, the same for all images of a particle.
 struct Records {
@@ -71,7 +76,7 @@ impl Records {
 
     fn sums<S: PairScale, const TERMS: bool>(
         &self,
-        terms: u8,
+        terms: Owner,
         set: Instructions,
         receivers: [u32; LANES],
         neighbours: &[u32],
@@ -90,8 +95,11 @@ impl Records {
                 set: terms,
                 records: &self.options,
                 inverse_shape: self.inverse_shape,
-                conduction: CONDUCTIVITY,
-                xsph: EPSILON,
+                options: TermOptions {
+                    conduction: CONDUCTIVITY,
+                    xsph: EPSILON,
+                    ..TermOptions::default()
+                },
             },
         })
     }
@@ -116,9 +124,9 @@ fn plain(
     group: std::ops::Range<usize>,
     kernel: &Kernel,
     i: usize,
-    options: u8,
+    options: Owner,
 ) -> Plain {
-    let on = |option: u8| f64::from(u8::from(options & option != 0));
+    let on = |option| f64::from(u8::from(options.contains(option)));
     let (here, state, own) = (&records.motion[i], &records.stress[i], &records.options[i]);
     let mut sum = Plain::default();
     for j in group {
@@ -137,10 +145,10 @@ fn plain(
         if dot(&v, &r) < 0.0 {
             let mu = h * dot(&v, &r) / (distance * distance + 0.01 * h * h);
             let c = 0.5 * (state.viscous_speed + other.viscous_speed);
-            let limit = if options & BALSARA == 0 {
-                1.0
-            } else {
+            let limit = if options.contains(Owner::BALSARA) {
                 own.half_limiter + its.half_limiter
+            } else {
+                1.0
             };
             speed = limit * (VISCOSITY.alpha * c - VISCOSITY.beta * mu);
             pi = -mu * speed / density;
@@ -149,16 +157,17 @@ fn plain(
         let f = kernel.value(distance, h) / kernel.value(RATIO * h, h);
         let s: [f64; 6] = std::array::from_fn(|c| {
             let stress = state.stress_over_density2[c] + other.stress_over_density2[c];
-            let extra = on(ARTIFICIAL_STRESS) * (own.repulsion[c] + its.repulsion[c]) * f.powi(4);
+            let extra =
+                on(Owner::ARTIFICIAL_STRESS) * (own.repulsion[c] + its.repulsion[c]) * f.powi(4);
             stress + extra - if c < 3 { pi } else { 0.0 }
         });
         let rows = [[s[0], s[3], s[4]], [s[3], s[1], s[5]], [s[4], s[5], s[2]]];
         let force = rows.map(|row| there.mass * dot(&row, &grad_w));
-        let heat = on(CONDUCTION) * CONDUCTIVITY * there.mass * speed / density
+        let heat = on(Owner::CONDUCTION) * CONDUCTIVITY * there.mass * speed / density
             * slope
             * (own.specific_energy - its.specific_energy);
         sum.power += heat - 0.5 * dot(&v, &force);
-        let share = on(XSPH) * EPSILON * there.mass / density * kernel.value(distance, h);
+        let share = on(Owner::XSPH) * EPSILON * there.mass / density * kernel.value(distance, h);
         let size =
             rows.as_flattened().iter().map(|x| x.abs()).sum::<f64>() * there.mass * slope.abs();
         for a in 0..3 {
@@ -183,7 +192,7 @@ fn bits(forces: &Forces) -> Vec<u64> {
 
 /// The sums of a set of options over all clusters of a cloud: equal to the plain sums, and equal
 /// bits for all instruction sets.
-fn check<S: PairScale>(terms: u8, cloud: &Cloud, scale: S) {
+fn check<S: PairScale>(terms: Owner, cloud: &Cloud, scale: S) {
     let kernel = Kernel::new(cloud.dimension);
     let found = cloud.find();
     let records = Records::new(cloud, &found, 77);
@@ -202,7 +211,10 @@ fn check<S: PairScale>(terms: u8, cloud: &Cloud, scale: S) {
             // As in `engine_sph`: some tens of roundings a term.
             let close = |value: f64, reference: f64, size: f64| {
                 let error = (value - reference).abs();
-                assert!(error <= 3e-14 * size, "{terms}: {value} is not {reference}");
+                assert!(
+                    error <= 3e-14 * size,
+                    "{terms:?}: {value} is not {reference}"
+                );
             };
             for a in 0..3 {
                 close(
@@ -226,10 +238,10 @@ fn options_agree_with_plain_sums() {
     for planes in [0, 1] {
         let constant = cloud(3, 1.0, planes, 41);
         let scale = ConstantScale::new(&Kernel::new(3), constant.smoothing_length[0]);
-        check(ARTIFICIAL_STRESS, &constant, scale);
-        check(BALSARA, &constant, scale);
-        check(CONDUCTION, &constant, scale);
-        check(XSPH, &constant, scale);
+        check(Owner::ARTIFICIAL_STRESS, &constant, scale);
+        check(Owner::BALSARA, &constant, scale);
+        check(Owner::CONDUCTION, &constant, scale);
+        check(Owner::XSPH, &constant, scale);
         check(ALL, &constant, scale);
         check(
             ALL,
@@ -265,10 +277,10 @@ fn terms_that_are_off_or_neutral_change_no_bit() {
             .collect::<Vec<_>>()
     };
     let plain = all(&records, |records, receivers, list, scale| {
-        records.sums::<_, false>(0, available()[0], receivers, list, scale)
+        records.sums::<_, false>(Owner::empty(), available()[0], receivers, list, scale)
     });
     let off = all(&records, |records, receivers, list, scale| {
-        records.sums::<_, true>(0, available()[0], receivers, list, scale)
+        records.sums::<_, true>(Owner::empty(), available()[0], receivers, list, scale)
     });
     assert_eq!(off, plain);
     records.options.fill(TermRecord::NEUTRAL);
