@@ -1,20 +1,40 @@
 //! Number and bounds of the sites of bodies, counted once for all that asks for them.
 
-use rayon::prelude::*;
+use std::num::NonZero;
+use std::thread;
 
 use super::filling::Filling;
 use super::row::cuts;
 use super::visits;
 use model::{Body, Filled, SymmetryPlane};
 
+/// Bodies of which several threads count.
+const MANY: usize = 64;
+
 /// Counts the sites of bodies that stand in their final places, above all symmetry planes, where that has not been done.
 pub fn fill(bodies: &mut [Body], dimension: usize, symmetry: &[SymmetryPlane]) {
-    // Each body by itself, so the same bits in any order.
-    let uncounted = bodies.par_iter_mut().filter(|body| body.filled.is_none());
-    let seen =
-        uncounted.map(|body| visits::of(|| body.filled = Some(filled(body, dimension, symmetry))));
-    let seen: Vec<u64> = seen.collect();
-    visits::add(seen.into_iter().sum());
+    let count = |bodies: &mut [Body]| {
+        for body in bodies.iter_mut().filter(|body| body.filled.is_none()) {
+            body.filled = Some(filled(body, dimension, symmetry));
+        }
+    };
+    if bodies.len() < MANY {
+        return count(bodies);
+    }
+    // Threads of their own: a case is read before a program chooses those of its pool.
+    let threads = thread::available_parallelism().map_or(1, NonZero::get);
+    let seen: u64 = thread::scope(|scope| {
+        let parts = bodies.chunks_mut(bodies.len().div_ceil(threads));
+        let tasks: Vec<_> = parts
+            .map(|part| scope.spawn(move || visits::of(|| count(part))))
+            .collect();
+        let seen = tasks.into_iter().map(|task| {
+            let seen = task.join();
+            seen.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        });
+        seen.sum()
+    });
+    visits::add(seen);
 }
 
 fn filled(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Filled {

@@ -107,8 +107,8 @@ fn a_broken_manifest_or_another_format_is_told() {
     let manifest = path.join(checkpoint::MANIFEST);
     let text = fs::read_to_string(&manifest).unwrap();
 
-    fs::write(&manifest, text.replace("\"format\": 1", "\"format\": 2")).unwrap();
-    assert!(refusal(&path).contains("has format 2, this program reads format 1"));
+    fs::write(&manifest, text.replace("\"format\": 2", "\"format\": 3")).unwrap();
+    assert!(refusal(&path).contains("has format 3, this program reads format 2"));
 
     fs::write(&manifest, text.replace("\"step\": 3", "\"step\": 4")).unwrap();
     assert!(refusal(&path).contains("it is of step 3, manifest.json of step 4"));

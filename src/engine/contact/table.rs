@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
-use model::{Body, Case, ContactMode, ContactPair, SelfContact};
+use model::{Body, Case, ContactMode, ContactPair, Loads, SelfContact};
 use numerics::kernel::{Kernel, SUPPORT};
 use particles::neighbours::{ForeignTable, GroupRanges, Groups, SizeClasses};
 use particles::{HaloPhase, Owner, ParticleStore};
@@ -121,6 +121,10 @@ impl ContactTable {
         Self::new(&Case {
             contacts: contacts.collect(),
             bodies: kept.iter().map(|&body| case.bodies[body].clone()).collect(),
+            loads: Loads {
+                velocities: Vec::new(),
+                ..case.loads.clone()
+            },
             ..case.clone()
         })
     }
