@@ -1,6 +1,6 @@
 //! The filling of a body: rows of a file, layers, tiles or rows of a lattice.
 
-use super::cells::{self, Cells};
+use super::cells::{self, Cells, Seen};
 use super::extremes;
 use super::given::{Given, GivenRows};
 use super::lattice::Stack;
@@ -112,27 +112,28 @@ impl Filling {
         }
     }
 
+    /// What has been looked at before a first search.
+    pub fn unseen(&self) -> Vec<Seen> {
+        match self {
+            Self::Cells(cells) => cells::unseen(cells),
+            _ => Vec::new(),
+        }
+    }
+
     /// Those where `value` is smallest, smallest first: see [`super::search()`].
     pub fn smallest(
-        self,
-        cuts: Vec<Cut>,
+        &self,
+        cuts: &[Cut],
+        seen: &[Seen],
         wanted: Wanted,
         bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
         value: impl Fn(&[f64; 3]) -> f64,
     ) -> Vec<(f64, [f64; 3])> {
         match self {
             Self::Given(given) => best(&GivenRows { given, cuts }, wanted, bound, value),
-            Self::Shells(shells) => shells.smallest(&cuts, wanted, bound, value),
-            Self::Cells(cells) => cells::smallest(&cells, &cuts, wanted, bound, value),
-            Self::Rows(stack) => best(
-                &Rows {
-                    stack: *stack,
-                    cuts,
-                },
-                wanted,
-                bound,
-                value,
-            ),
+            Self::Shells(shells) => shells.smallest(cuts, wanted, bound, value),
+            Self::Cells(cells) => cells::smallest(cells, cuts, seen, wanted, bound, value),
+            Self::Rows(stack) => best(&Rows { stack, cuts }, wanted, bound, value),
         }
     }
 

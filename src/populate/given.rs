@@ -147,12 +147,12 @@ impl Given {
 }
 
 /// The particles of a body within some cuts, by their places in the order of the tree.
-pub(super) struct GivenRows {
-    pub given: Given,
-    pub cuts: Vec<Cut>,
+pub(super) struct GivenRows<'a> {
+    pub given: &'a Given,
+    pub cuts: &'a [Cut],
 }
 
-impl Parts for GivenRows {
+impl Parts for GivenRows<'_> {
     fn all(&self) -> [u64; 3] {
         [self.given.index_end(), 1, 1]
     }

@@ -5,12 +5,12 @@ use super::parts::Parts;
 use super::row::Cut;
 
 /// Rows of a lattice, by the indices of their sites.
-pub(super) struct Rows {
-    pub stack: Stack,
-    pub cuts: Vec<Cut>,
+pub(super) struct Rows<'a> {
+    pub stack: &'a Stack,
+    pub cuts: &'a [Cut],
 }
 
-impl Parts for Rows {
+impl Parts for Rows<'_> {
     fn all(&self) -> [u64; 3] {
         self.stack.counts
     }

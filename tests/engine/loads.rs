@@ -518,7 +518,8 @@ velocity = [0, "3 km/s"]
         let case = inline(&text);
         let table = ContactTable::new(&case);
         let material = &case.materials[0];
-        let core = |a, b| table.overlap(a, b).core_modulus;
+        let classes = [0, 1].map(|body| table.foreign.size_classes.smallest(body));
+        let core = |a: usize, b: usize| table.overlap(classes[a], classes[b]).core_modulus;
         assert_eq!(core(0, 1), core(1, 0));
         // 2.2 is the default of κ_c.
         let scale = core(0, 1) / 2.2;

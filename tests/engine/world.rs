@@ -130,8 +130,10 @@ impl World {
         (0..self.len())
             .filter(|&j| {
                 let (a, b) = self.bodies(i, j);
-                let pair = a * self.case.bodies.len() + b;
-                self.table.foreign.class[pair] == Some(class)
+                let classes = &self.table.foreign.size_classes;
+                let pair = classes.smallest(a) * classes.count() + classes.smallest(b);
+                a != b
+                    && self.table.foreign.class[pair] == Some(class)
                     && self.distance(i, j).powi(2) < self.table.foreign.reach2[pair]
             })
             .map(|j| u32::try_from(j).unwrap())

@@ -1,8 +1,10 @@
 //! Times at which bodies meet, from their initial velocities.
 
+use std::cell::OnceCell;
+
 use model::{Body, Case, Vec3};
 use numerics::meetings::{Meetings, MovingBox};
-use populate::{self, Wanted, search};
+use populate::{self, Searched, Wanted};
 
 /// Bodies closer than this many spacings touch.
 const TOUCH: f64 = 0.1;
@@ -59,11 +61,12 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
         .iter()
         .map(|&index| populate::bounds(&case.bodies[index], case.dimension))
         .collect();
+    let searches: Vec<Search> = indices.iter().map(|_| Search::default()).collect();
     let of_pair = |places: [usize; 2]| {
         let bodies = places.map(|place| indices[place]);
         let boxes = [ends[places[0]]?, ends[places[1]]?];
         may_meet(case, boxes, bodies, until).then_some(())?;
-        approach(case, boxes, bodies)
+        approach(case, boxes, bodies, places.map(|place| &searches[place]))
     };
     pairs.into_iter().filter_map(of_pair).collect()
 }
@@ -96,7 +99,15 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
     !(driven || table || falls || spreads)
 }
 
-fn approach(case: &Case, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approach> {
+/// The sites of a body, for all pairs that it is of.
+type Search = OnceCell<Searched>;
+
+fn approach(
+    case: &Case,
+    boxes: [Ends; 2],
+    bodies: [usize; 2],
+    searches: [&Search; 2],
+) -> Option<Approach> {
     let [first, second] = bodies.map(|body| &case.bodies[body]);
     if first.rigid.is_some() && second.rigid.is_some() {
         return None;
@@ -114,8 +125,15 @@ fn approach(case: &Case, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approac
         speed: velocity.norm(),
         time: f64::INFINITY,
     };
-    for (body, target, velocity) in [(first, second, velocity), (second, first, -velocity)] {
-        let (gap, time) = towards(case, [body, target], velocity, until);
+    let ways = [(first, second, velocity), (second, first, -velocity)];
+    for ((body, target, velocity), search) in ways.into_iter().zip(searches) {
+        let new = || Searched::new(body, case.dimension, &case.symmetry);
+        let sites = Sites {
+            body,
+            search: search.get_or_init(new),
+            dimension: case.dimension,
+        };
+        let (gap, time) = towards(&sites, target, velocity, until);
         approach.gap = approach.gap.min(gap / spacing);
         approach.time = approach.time.min(time);
     }
@@ -124,9 +142,9 @@ fn approach(case: &Case, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approac
 
 /// The smallest distance (m) of the particles of a body from touching another, and the first time (s)
 /// at which one touches, moving at `velocity` (m/s); infinite if later than `until` (s).
-fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) -> (f64, f64) {
-    let near = TOUCH * body.lattice.spacing;
-    let start = nearest(case, body, target, Vec3::zeros());
+fn towards(sites: &Sites, target: &Body, velocity: Vec3, until: f64) -> (f64, f64) {
+    let near = TOUCH * sites.body.lattice.spacing;
+    let start = sites.nearest(target, Vec3::zeros());
     let (mut time, mut left) = (0.0, start);
     for _ in 0..MOST_STEPS {
         if left <= near {
@@ -136,33 +154,41 @@ fn towards(case: &Case, [body, target]: [&Body; 2], velocity: Vec3, until: f64) 
         if !(time <= until && time.is_finite()) {
             break;
         }
-        left = nearest(case, body, target, velocity * time);
+        left = sites.nearest(target, velocity * time);
     }
     (start, f64::INFINITY)
 }
 
-/// The smallest distance (m) of the particles of `body`, all moved by `way` (m), from touching `target`.
-fn nearest(case: &Case, body: &Body, target: &Body, way: Vec3) -> f64 {
-    let (shape, dimension) = (&target.shape, case.dimension);
-    let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
-    let widest = 0.5 * (body.lattice.coarsest() - body.lattice.spacing);
-    let found = search(
-        (body, dimension, &case.symmetry),
-        Wanted {
-            most: 1,
-            limit: f64::INFINITY,
-            any: false,
-        },
-        |lower, upper| {
-            let [lower, upper] = [lower, upper].map(|corner| moved(corner).into());
-            shape.least_distance(&lower, &upper, dimension) - widest
-        },
-        |x| shape.distance(&moved(x), dimension) - body.lattice.wider(x),
-    );
-    let nearest = found
-        .first()
-        .map_or(f64::INFINITY, |(distance, _)| *distance);
-    nearest - 0.5 * body.lattice.spacing
+/// Where the particles of a body begin.
+struct Sites<'a> {
+    body: &'a Body,
+    search: &'a Searched,
+    dimension: usize,
+}
+
+impl Sites<'_> {
+    /// Their smallest distance (m), all moved by `way` (m), from touching `target`.
+    fn nearest(&self, target: &Body, way: Vec3) -> f64 {
+        let (shape, dimension, lattice) = (&target.shape, self.dimension, &self.body.lattice);
+        let moved = |x: &[f64; 3]| Vec3::from(*x) + way;
+        let widest = 0.5 * (lattice.coarsest() - lattice.spacing);
+        let found = self.search.smallest(
+            Wanted {
+                most: 1,
+                limit: f64::INFINITY,
+                any: false,
+            },
+            |lower, upper| {
+                let [lower, upper] = [lower, upper].map(|corner| moved(corner).into());
+                shape.least_distance(&lower, &upper, dimension) - widest
+            },
+            |x| shape.distance(&moved(x), dimension) - lattice.wider(x),
+        );
+        let nearest = found
+            .first()
+            .map_or(f64::INFINITY, |(distance, _)| *distance);
+        nearest - 0.5 * lattice.spacing
+    }
 }
 
 /// The last time (s) at which two boxes, of which the first one moves at `velocity` (m/s), are no

@@ -3,6 +3,9 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+/// The sites (m) of blocks of a level that have been looked at.
+pub(crate) type Seen = RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>;
+
 use super::fit::{LAYER, on_layer};
 use super::laid::{Block, Cells};
 use crate::Wanted;
@@ -15,20 +18,19 @@ struct Blocks<'a> {
     cells: &'a Cells,
     level: usize,
     cuts: &'a [Cut],
-    /// The sites (m) of blocks that have been looked at.
-    seen: RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>,
+    seen: &'a Seen,
 }
 
 impl<'a> Blocks<'a> {
-    /// Of all levels.
-    fn all(cells: &'a Cells, cuts: &'a [Cut]) -> Vec<Self> {
-        let levels = 0..cells.levels.len();
+    /// Of all levels, with what has been seen of each.
+    fn all(cells: &'a Cells, cuts: &'a [Cut], seen: &'a [Seen]) -> Vec<Self> {
+        let levels = seen.iter().enumerate();
         levels
-            .map(|level| Self {
+            .map(|(level, seen)| Self {
                 cells,
                 level,
                 cuts,
-                seen: RefCell::default(),
+                seen,
             })
             .collect()
     }
@@ -82,15 +84,21 @@ impl Parts for Blocks<'_> {
     }
 }
 
+/// Nothing seen of any level.
+pub(crate) fn unseen(cells: &Cells) -> Vec<Seen> {
+    cells.levels.iter().map(|_| Seen::default()).collect()
+}
+
 /// The sites where `value` is smallest, smallest first: see [`crate::search`].
 pub(crate) fn smallest(
     cells: &Cells,
     cuts: &[Cut],
+    seen: &[Seen],
     wanted: Wanted,
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
-    smallest_of(&Blocks::all(cells, cuts), wanted, bound, value)
+    smallest_of(&Blocks::all(cells, cuts, seen), wanted, bound, value)
 }
 
 /// The same of blocks of all levels.
@@ -130,7 +138,8 @@ pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
         }
     };
     // Of a small body all six searches look at the same blocks.
-    let blocks = Blocks::all(cells, cuts);
+    let seen = unseen(cells);
+    let blocks = Blocks::all(cells, cuts, &seen);
     let (mut lowest, mut highest) = ([0.0; 3], [0.0; 3]);
     for a in 0..cells.dimension {
         let low = |lower: &[f64; 3], upper: &[f64; 3]| lower[a].max(least[a] + layer(lower, upper));
