@@ -15,7 +15,7 @@ const MANY: usize = 64;
 pub fn fill(bodies: &mut [Body], dimension: usize, symmetry: &[SymmetryPlane]) {
     let count = |bodies: &mut [Body]| {
         for body in bodies.iter_mut().filter(|body| body.filled.is_none()) {
-            body.filled = Some(filled(body, dimension, symmetry));
+            body.filled = filled(body, dimension, symmetry);
         }
     };
     if bodies.len() < MANY {
@@ -37,11 +37,15 @@ pub fn fill(bodies: &mut [Body], dimension: usize, symmetry: &[SymmetryPlane]) {
     visits::add(seen);
 }
 
-fn filled(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Filled {
+/// Rows of a lattice are counted in no time by whoever asks.
+fn filled(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<Filled> {
     let filling = Filling::of(body, dimension, symmetry);
+    if matches!(filling, Filling::Rows(_)) {
+        return None;
+    }
     let cuts = cuts(symmetry, None);
     let above = filling.extremes(&cuts);
-    Filled {
+    Some(Filled {
         symmetry: symmetry.to_vec(),
         count: filling.count(&cuts),
         whole: if symmetry.is_empty() {
@@ -50,7 +54,7 @@ fn filled(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Filled {
             Filling::of(body, dimension, &[]).extremes(&[])
         },
         above,
-    }
+    })
 }
 
 /// What has been counted of a body above some planes.

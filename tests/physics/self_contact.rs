@@ -179,7 +179,11 @@ fn a_ring_that_is_squashed_carries_on_its_inside() {
         )));
         let (mut energy, mut pressed) = (0.0_f64, 0.0_f64);
         run_with(&mut s, 8e-3, |s| {
-            energy = energy.max(s.state.pairs[0].energy);
+            energy = s
+                .state
+                .pairs
+                .first()
+                .map_or(energy, |pair| energy.max(pair.energy));
             pressed = pressed.max(-s.state.loads[0].force[1]);
         });
         let opening = |s: &Simulation| {

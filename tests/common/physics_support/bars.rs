@@ -52,6 +52,7 @@ pub fn in_one_piece(mut case: Case) -> Case {
         panic!("a bar is a box");
     };
     case.bodies.truncate(1);
+    case.bodies[0].filled = None;
     if let Shape::Box { upper, .. } = &mut case.bodies[0].shape {
         *upper = end;
     }
