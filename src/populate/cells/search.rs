@@ -3,15 +3,15 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// The sites (m) of blocks of a level that have been looked at.
-pub(crate) type Seen = RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>;
-
 use super::fit::{LAYER, on_layer};
 use super::laid::{Block, Cells};
 use crate::Wanted;
 use crate::parts::{Parts, best};
 use crate::row::Cut;
 use model::{Lattice, Vec3};
+
+/// The sites (m) of blocks of a level that have been looked at.
+pub(crate) type Seen = RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>;
 
 /// Blocks of a level of what is filled by cells, within some cuts.
 struct Blocks<'a> {
