@@ -119,7 +119,7 @@ impl Scene {
             rigid: false,
         };
         self.clusters
-            .build(&self.sequence, &[lengths; 2], (&[], true));
+            .build(&self.sequence, &[lengths; 2], (None, true));
     }
 
     pub fn list_foreign(&self, table: &ContactTable, foreign: &mut ForeignLists) {

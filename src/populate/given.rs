@@ -171,7 +171,7 @@ impl Parts for GivenRows<'_> {
     #[allow(clippy::cast_possible_truncation)] // as above
     fn emit(&self, at: [u64; 3], mut emit: impl FnMut([f64; 3])) {
         let row = self.given.cloud.order()[at[0] as usize] as usize;
-        if self.given.is_left(row, &self.cuts) {
+        if self.given.is_left(row, self.cuts) {
             emit(self.given.position(row));
         }
     }

@@ -184,6 +184,7 @@ impl HaloCount {
                 counts.clear();
                 counts.resize(near.len(), 0);
                 for word in part {
+                    #[expect(clippy::cast_possible_truncation, reason = "as it was made")]
                     let i = (word & u64::from(u32::MAX)) as usize;
                     let (position, reach) = (&positions[i], reach(i));
                     for (count, &other) in counts.iter_mut().zip(&near) {

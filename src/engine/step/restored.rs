@@ -86,9 +86,12 @@ fn are_pairs(case: &Case, pairs: &[PairState]) -> bool {
     let all = case.bodies.len();
     let is_one = |pair: &PairState| {
         let [a, b] = pair.bodies;
-        let touches = || match a == b {
-            true => case.self_contact.is_some(),
-            false => case.contact_between(a, b).class().is_some(),
+        let touches = || {
+            if a == b {
+                case.self_contact.is_some()
+            } else {
+                case.contact_between(a, b).class().is_some()
+            }
         };
         a <= b && b < all && touches()
     };

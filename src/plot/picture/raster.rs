@@ -1,5 +1,6 @@
 //! From the cells of a section to the pixels of a panel.
 
+use std::cell::OnceCell;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -32,7 +33,7 @@ struct FineSamples {
     /// Fine rows above.
     first: usize,
     columns: usize,
-    taken: Vec<Option<Option<Sample>>>,
+    taken: Vec<OnceCell<Option<Sample>>>,
 }
 
 /// A panel while it is drawn.
@@ -105,17 +106,17 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
             ys.all(|y| xs.clone().all(|x| middle(x, y).map(|s| s.body) == own))
         };
         let mut pixels = Vec::with_capacity(rows.len() * columns);
-        let mut fine = FineSamples {
+        let fine = FineSamples {
             first: FINE * first,
             columns: FINE * columns,
-            taken: vec![None; FINE * FINE * (end - first) * columns],
+            taken: vec![OnceCell::new(); FINE * FINE * (end - first) * columns],
         };
         for y in rows {
             for x in 0..columns {
                 pixels.push(if even(x, y) {
                     self.colour(middle(x, y))
                 } else {
-                    self.edge(x, y, &mut fine)
+                    self.edge(x, y, &fine)
                 });
             }
         }
@@ -123,7 +124,7 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
     }
 
     /// A pixel near the edge of a body, with what is there of the line about it.
-    fn edge(&self, x: usize, y: usize, fine: &mut FineSamples) -> Rgb {
+    fn edge(&self, x: usize, y: usize, fine: &FineSamples) -> Rgb {
         let wide = FINE + 2 * self.line;
         let shifted = |k: usize, pixel: usize, count: usize| {
             (FINE * pixel + k)
@@ -134,8 +135,8 @@ impl<C: Fn(&Sample) -> Rgb> Panel<'_, C> {
             .map(|k| {
                 let column = shifted(k % wide, x, self.size[0]);
                 let row = shifted(k / wide, y, self.size[1]);
-                let taken = &mut fine.taken[(row - fine.first) * fine.columns + column];
-                *taken.get_or_insert_with(|| self.sample(column, row))
+                let taken = &fine.taken[(row - fine.first) * fine.columns + column];
+                *taken.get_or_init(|| self.sample(column, row))
             })
             .collect();
         let mut sum = [0; 3];
