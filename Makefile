@@ -27,7 +27,7 @@ impact: release ## Run the main job on two ranks, draw its pictures, write the p
 	$(ENV) target/release/whipple info runs/quarter-impact
 	$(ENV) target/release/whipple report runs/quarter-impact
 
-test: run-tests ## Run the test suite, some 21 minutes on two cores with its build
+test: run-tests ## Run the test suite, 12 to 21 minutes on two cores with its build
 
 check-fast: test-deps ## What takes a minute after an edit: format, lints, the unit tests of all crates
 	$(ENV) cargo fmt --all --check

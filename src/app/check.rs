@@ -87,7 +87,7 @@ pub fn run(args: &CheckArgs) -> u8 {
     let approaches = preflight::approaches(&case);
     let mut warnings = preflight::warnings(&case, &approaches);
     warnings.extend(preflight::advice(&case, &approaches));
-    for warning in &warnings {
+    for warning in preflight::shortened(&warnings) {
         warn(&format!("warning: {warning}"));
     }
     let ranks = args.ranks as usize;
@@ -222,10 +222,17 @@ fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
     let steps = plan::expected_steps(case, approaches, 0.0);
     if let Some(steps) = steps {
         let end = shown(case.run.end_time, "s");
-        say(&format!("  about {} steps to {end}", short(steps)));
+        let more = if case.bodies.iter().any(|body| body.total) {
+            ", some times as many where the total form squeezes particles"
+        } else {
+            ""
+        };
+        say(&format!("  about {} steps to {end}{more}", short(steps)));
     }
     let machine = machine(case, approaches);
-    print_costs(case, total as f64, steps, ranks, &machine);
+    if let Ok(files) = Files::new(case, approaches, total as f64, steps.unwrap_or(0.0)) {
+        print_costs(case, &files, steps, ranks, &machine);
+    }
 }
 
 /// What a case with so many warnings is.
@@ -262,12 +269,9 @@ fn wall_time(case: &Case, ranks: usize, machine: &Machine, steps: f64, files: &F
 }
 
 /// Prints the time that the run takes on an ordinary machine, and its disk space.
-fn print_costs(case: &Case, particles: f64, steps: Option<f64>, ranks: usize, machine: &Machine) {
-    let Ok(files) = Files::new(case, particles, steps.unwrap_or(0.0)) else {
-        return;
-    };
+fn print_costs(case: &Case, files: &Files, steps: Option<f64>, ranks: usize, machine: &Machine) {
     if let Some(steps) = steps {
-        let wall = duration(wall_time(case, ranks, machine, steps, &files));
+        let wall = duration(wall_time(case, ranks, machine, steps, files));
         let plural = if ranks == 1 { "" } else { "s" };
         let name = &machine.name;
         say(&format!(

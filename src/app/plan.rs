@@ -332,7 +332,9 @@ fn row_of(
 
 fn print_files(source: &Source, machine: &Machine) -> Result<Files, String> {
     let count = as_number(source.particles.positions.len());
-    let files = Files::new(&source.case, count, source.outlook.steps.unwrap_or(0.0));
+    let outlook = &source.outlook;
+    let steps = outlook.steps.unwrap_or(0.0);
+    let files = Files::new(&source.case, &outlook.approaches, count, steps);
     let files = files.map_err(|error| format!("error: {error}"))?;
     for line in file_lines(&files, machine) {
         say(&format!("  {line}"));

@@ -20,7 +20,7 @@ use super::row::Cut;
 use fit::Fitted;
 
 pub(super) use laid::{Cells, has_rows};
-pub(super) use search::{Seen, extremes, smallest, unseen};
+pub(super) use search::{Seen, extremes, near_sites, smallest, unseen};
 pub(super) use tile::drawn;
 
 /// All sites that the cuts leave, by their positions before they are fitted.

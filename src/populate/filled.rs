@@ -4,7 +4,8 @@ use std::num::NonZero;
 use std::thread;
 
 use super::filling::Filling;
-use super::row::cuts;
+use super::row::{Cut, cuts};
+use super::searched::{Ends, ends, few};
 use super::visits;
 use model::{Body, Filled, SymmetryPlane};
 
@@ -44,17 +45,26 @@ fn filled(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Option<F
         return None;
     }
     let cuts = cuts(symmetry, None);
-    let above = filling.extremes(&cuts);
+    let (count, above) = counted(&filling, &cuts);
+    let (_, whole) = if symmetry.is_empty() {
+        (count, above)
+    } else {
+        counted(&Filling::of(body, dimension, &[]), &[])
+    };
     Some(Filled {
         symmetry: symmetry.to_vec(),
-        count: filling.count(&cuts),
-        whole: if symmetry.is_empty() {
-            above
-        } else {
-            Filling::of(body, dimension, &[]).extremes(&[])
-        },
+        count,
+        whole,
         above,
     })
+}
+
+/// Number of sites, and their smallest and largest coordinates (m).
+fn counted(filling: &Filling, cuts: &[Cut]) -> (u64, Option<Ends>) {
+    match few(filling, cuts) {
+        Some(sites) => (sites.len() as u64, ends(&sites)),
+        None => (filling.count(cuts), filling.extremes(cuts)),
+    }
 }
 
 /// What has been counted of a body above some planes.

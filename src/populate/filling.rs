@@ -112,6 +112,20 @@ impl Filling {
         }
     }
 
+    /// All sites (m), those that are fitted where they end nearly; `None` of rows of a file and of shells.
+    pub fn near_sites(&self, cuts: &[Cut]) -> Option<Vec<[f64; 3]>> {
+        match self {
+            Self::Given(_) | Self::Shells(_) => None,
+            Self::Cells(cells) => Some(cells::near_sites(cells, cuts)),
+            Self::Rows(stack) => {
+                let rows = rows(**stack, cuts.to_vec());
+                let sites =
+                    rows.flat_map(|row| row.range().map(move |i| stack.position(i, row.j, row.k)));
+                Some(sites.collect())
+            }
+        }
+    }
+
     /// What has been looked at before a first search.
     pub fn unseen(&self) -> Vec<Seen> {
         match self {

@@ -15,6 +15,7 @@ mod parts;
 mod row;
 mod sample;
 mod search;
+mod searched;
 mod shells;
 mod stress_points;
 mod tally;
@@ -25,13 +26,14 @@ pub use brick::Brick;
 pub use filled::fill;
 pub use overlap::{Overlap, close_pairs, overlap, surroundings};
 pub use sample::sample;
+pub use searched::{Searched, Searches};
 pub use stress_points::{StressSite, stress_count, stress_index_end, stress_sites};
 pub use together::{counts, for_each_body};
 pub use touch::{touching_distance, touching_value};
 
 use filling::Filling;
 use model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
-use row::{Cut, cuts};
+use row::cuts;
 
 #[cfg(test)]
 mod tests;
@@ -165,37 +167,6 @@ pub fn search(
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
     Searched::new(body, dimension, symmetry).smallest(wanted, bound, value)
-}
-
-/// A body of which sites are searched again and again, and those that have been looked at.
-pub struct Searched {
-    filling: Filling,
-    cuts: Vec<Cut>,
-    seen: Vec<cells::Seen>,
-}
-
-impl Searched {
-    /// Nothing looked at of the sites of a body above all symmetry planes.
-    #[must_use]
-    pub fn new(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> Self {
-        let filling = Filling::of(body, dimension, symmetry);
-        Self {
-            seen: filling.unseen(),
-            cuts: cuts(symmetry, None),
-            filling,
-        }
-    }
-
-    /// The sites where `value` is smallest, as [`search`] finds them.
-    pub fn smallest(
-        &self,
-        wanted: Wanted,
-        bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
-        value: impl Fn(&[f64; 3]) -> f64,
-    ) -> Vec<(f64, [f64; 3])> {
-        let Self { cuts, seen, .. } = self;
-        self.filling.smallest(cuts, seen, wanted, bound, value)
-    }
 }
 
 /// Smallest and largest coordinates (m) of the sites of a whole body, or `None` if it has none.

@@ -1,6 +1,6 @@
 //! The initial overlap of two bodies.
 
-use super::{Wanted, bounds, search};
+use super::{Searches, Wanted, bounds};
 use model::{Body, Case, ContactMode, Vec3};
 use numerics::extent::Extent;
 use numerics::meetings::{Meetings, MovingBox};
@@ -60,47 +60,55 @@ pub fn close_pairs(case: &Case) -> Vec<[usize; 2]> {
 /// A face lies half a spacing before its outermost particles. Shapes give the depth and particles
 /// confirm it, since a curved shape is not filled to its edge.
 #[must_use]
-pub fn overlap(case: &Case, a: usize, b: usize) -> Option<Overlap> {
-    let [a, b] = [&case.bodies[a], &case.bodies[b]];
-    let either = [deepest(case, a, b), deepest(case, b, a)];
+pub fn overlap(searches: &Searches, a: usize, b: usize) -> Option<Overlap> {
+    let either = [deepest(searches, a, b), deepest(searches, b, a)];
     let deeper = either.into_iter().flatten();
     deeper.max_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
-/// The deepest particle of `body` that `other` has particles around.
-fn deepest(case: &Case, body: &Body, other: &Body) -> Option<Overlap> {
-    let dimension = case.dimension;
+/// The deepest particle of a body that another has particles around.
+fn deepest(searches: &Searches, index: usize, others: usize) -> Option<Overlap> {
+    let (case, dimension) = (searches.case, searches.case.dimension);
+    let [body, other] = [index, others].map(|body| &case.bodies[body]);
     let (own, its) = (&body.lattice, &other.lattice);
     let mean = |at: &[f64; 3]| {
         let at = Vec3::from(*at);
         0.5 * (own.spacing_at(&at) + its.spacing_at(&at))
     };
     let widest = 0.5 * (own.coarsest() - own.spacing);
-    let within = search(
-        (body, dimension, &case.symmetry),
+    let limit = 0.5 * own.spacing;
+    let bound = |lower: &[f64; 3], upper: &[f64; 3]| {
+        other.shape.least_distance(lower, upper, dimension) - widest
+    };
+    // Most bodies that are near are apart by far.
+    let (lower, upper) = bounds(body, dimension)?;
+    if bound(&lower, &upper) >= limit {
+        return None;
+    }
+    let within = searches.of(index).smallest(
         Wanted {
             most: DEEPEST,
-            limit: 0.5 * own.spacing,
+            limit,
             any: false,
         },
-        |lower, upper| other.shape.least_distance(lower, upper, dimension) - widest,
+        bound,
         |x| other.shape.distance(&Vec3::from(*x), dimension) - own.wider(x),
     );
     let mut overlaps = within.into_iter().map(|(outside, at)| Overlap {
-        depth: (0.5 * own.spacing - outside) / mean(&at),
+        depth: (limit - outside) / mean(&at),
         at,
     });
     let confirmed = |overlap: &Overlap| {
         // Across the faces, and aside to the middle between particles.
         let across = (1.0 - overlap.depth).max(0.5);
         let near = (across * across + 0.5).sqrt().min(CLOSE) * mean(&overlap.at);
-        has_particle(case, other, overlap.at, near)
+        has_particle(searches, others, overlap.at, near)
     };
     overlaps.find(confirmed)
 }
 
 /// `true` if a body has a particle closer to a point than `near` (m).
-fn has_particle(case: &Case, body: &Body, point: [f64; 3], near: f64) -> bool {
+fn has_particle(searches: &Searches, body: usize, point: [f64; 3], near: f64) -> bool {
     let point = Vec3::from(point);
     let wanted = Wanted {
         most: 1,
@@ -108,8 +116,7 @@ fn has_particle(case: &Case, body: &Body, point: [f64; 3], near: f64) -> bool {
         any: true,
     };
     let distance = |x: Vec3| (x - point).norm();
-    let nearest = search(
-        (body, case.dimension, &case.symmetry),
+    let nearest = searches.of(body).smallest(
         wanted,
         |lower, upper| distance(Vec3::from_fn(|a, _| point[a].clamp(lower[a], upper[a]))),
         |x| distance(Vec3::from(*x)),

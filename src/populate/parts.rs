@@ -64,6 +64,43 @@ impl Block {
     }
 }
 
+/// The sites with the smallest values so far.
+pub(super) struct Nearest {
+    wanted: Wanted,
+    found: Vec<(f64, [f64; 3])>,
+}
+
+impl Nearest {
+    pub fn new(wanted: Wanted) -> Self {
+        let found = Vec::new();
+        Self { wanted, found }
+    }
+
+    /// Values from this one on are of no use.
+    pub fn worst(&self) -> f64 {
+        let last = self.found.last().filter(|_| self.is_full());
+        last.map_or(self.wanted.limit, |(worst, _)| *worst)
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.found.len() == self.wanted.most
+    }
+
+    /// Takes a site (m) with its value, if it is of use.
+    pub fn offer(&mut self, value: f64, position: [f64; 3]) {
+        if value < self.worst() {
+            let slot = self.found.partition_point(|(other, _)| *other <= value);
+            self.found.truncate(self.wanted.most - 1);
+            self.found.insert(slot, (value, position));
+        }
+    }
+
+    /// Smallest first.
+    pub fn found(self) -> Vec<(f64, [f64; 3])> {
+        self.found
+    }
+}
+
 /// The sites where `value` is smallest, smallest first, and no larger than a limit.
 pub(super) fn best(
     parts: &impl Parts,
@@ -71,11 +108,7 @@ pub(super) fn best(
     bound: impl Fn(&[f64; 3], &[f64; 3]) -> f64,
     value: impl Fn(&[f64; 3]) -> f64,
 ) -> Vec<(f64, [f64; 3])> {
-    let mut nearest: Vec<(f64, [f64; 3])> = Vec::new();
-    let worst_of = |nearest: &[(f64, [f64; 3])]| match nearest.last() {
-        Some((worst, _)) if nearest.len() == wanted.most => *worst,
-        _ => wanted.limit,
-    };
+    let mut nearest = Nearest::new(wanted);
     let whole = Block {
         bound: f64::NEG_INFINITY,
         first: [0; 3],
@@ -85,7 +118,7 @@ pub(super) fn best(
     let mut waiting: BinaryHeap<Block> = is_any.then_some(whole).into_iter().collect();
     while let Some(block) = waiting.pop() {
         super::visits::add(1);
-        let worst = worst_of(&nearest);
+        let worst = nearest.worst();
         if block.bound >= worst {
             break;
         }
@@ -101,16 +134,11 @@ pub(super) fn best(
             continue;
         }
         parts.emit(block.first, |position| {
-            let value = value(&position);
-            if value < worst_of(&nearest) {
-                let slot = nearest.partition_point(|(other, _)| *other <= value);
-                nearest.truncate(wanted.most - 1);
-                nearest.insert(slot, (value, position));
-            }
+            nearest.offer(value(&position), position);
         });
-        if wanted.any && nearest.len() == wanted.most {
+        if wanted.any && nearest.is_full() {
             break;
         }
     }
-    nearest
+    nearest.found()
 }

@@ -57,7 +57,7 @@ fn visits_besides(text: &str, approaches: &[Approach]) -> u64 {
             warnings(&case, approaches),
             share_of_work(&case, approaches),
             memory::of_rank(&case, &Comm::solo(), 1),
-            Files::new(&case, 1e4, steps).unwrap(),
+            Files::new(&case, approaches, 1e4, steps).unwrap(),
         )
     })
 }
@@ -94,6 +94,50 @@ fn balls(rows: u32) -> String {
         );
     }
     text
+}
+
+/// Bricks of glass in so many rows, columns and layers, laid face to face.
+fn bricks(rows: u32) -> String {
+    let sphere = "shape.sphere = { centre = [";
+    let mut text = String::new();
+    for line in balls(rows).replace("-300 m/s", "0 m/s").lines() {
+        match line.trim().strip_prefix(sphere) {
+            Some(rest) => {
+                let centre = rest.split(']').next().unwrap_or_default();
+                let _ = writeln!(
+                    text,
+                    "shape.box = {{ size = [\"1.3 mm\", \"1.3 mm\", \"1.3 mm\"], centre = [{centre}] }}"
+                );
+            }
+            None => text += &format!("{line}\n"),
+        }
+    }
+    text
+}
+
+#[test]
+fn a_wall_of_bricks_takes_its_share_of_each_brick() {
+    let [few, many] = [3, 6].map(|rows| {
+        let text = bricks(rows);
+        let read = visits_besides(&text, &approaches(&read(&text)));
+        read / u64::from(rows.pow(3))
+    });
+    assert!(many < 2 * few, "{few} {many}");
+}
+
+/// Tables have rows of pairs that meet alone.
+#[test]
+fn bodies_that_rest_side_by_side_take_no_rows_of_contact() {
+    let tables = |text: &str, known: bool| {
+        let case = read(text);
+        let pairs = approaches(&case);
+        let pairs = if known { pairs.as_slice() } else { &[] };
+        Files::new(&case, pairs, 1e4, 100.0).unwrap().tables
+    };
+    let flying = balls(4);
+    let still = flying.replace("-300 m/s", "0 m/s");
+    assert!((tables(&still, true) / tables(&still, false) - 1.0).abs() < 1e-12);
+    assert!(tables(&flying, true) > 1.05 * tables(&flying, false));
 }
 
 /// The sites of a body are counted once, for all that asks for them: the rest is the search for what is close to it.

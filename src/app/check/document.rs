@@ -29,7 +29,7 @@ pub(super) fn document(
     let steps = plan::expected_steps(case, approaches, 0.0);
     let machine = machine(case, approaches);
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-    let files = Files::new(case, total as f64, steps.unwrap_or(0.0)).ok();
+    let files = Files::new(case, approaches, total as f64, steps.unwrap_or(0.0)).ok();
     let wall = steps.zip(files);
     let wall = wall.map(|(steps, files)| wall_time(case, ranks, &machine, steps, &files));
     json!({

@@ -3,6 +3,7 @@
 use super::tables;
 use crate::output::OutputError;
 use crate::output::snapshot::{Plan, bytes_per_particle};
+use crate::preflight::Approach;
 use engine::step::store_of;
 use model::{Case, OutputOptions};
 use particles::Life;
@@ -27,12 +28,17 @@ pub struct Files {
 }
 
 impl Files {
-    /// Files of a run with `particles` and `steps`.
+    /// Files of a run with `particles`, `steps` and these approaches.
     ///
     /// # Errors
     /// [`OutputError::UnknownField`].
     #[allow(clippy::cast_precision_loss, reason = "bytes of a particle")]
-    pub fn new(case: &Case, particles: f64, steps: f64) -> Result<Self, OutputError> {
+    pub fn new(
+        case: &Case,
+        approaches: &[Approach],
+        particles: f64,
+        steps: f64,
+    ) -> Result<Self, OutputError> {
         let store = store_of(case);
         let (output, end) = (&case.output, case.run.end_time);
         let plans = Plan::all(case, &store)?;
@@ -51,7 +57,7 @@ impl Files {
             checkpoint: particles * store.bytes_per_particle(Life::State) as f64,
             checkpoints,
             kept: checkpoints.min(output.checkpoints_kept as f64),
-            tables: tables::bytes(case, steps),
+            tables: tables::bytes(case, approaches, steps),
         })
     }
 

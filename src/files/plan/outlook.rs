@@ -18,6 +18,8 @@ pub struct Outlook {
     pub steps: Option<f64>,
     /// Work of these steps over that if all particles moved.
     pub share_of_work: f64,
+    /// Bodies that meet, by their initial velocities.
+    pub approaches: Vec<Approach>,
     /// By particle, the times at which it waits; `None` if none does.
     waiting: Option<Vec<Waiting>>,
 }
@@ -37,6 +39,7 @@ impl Outlook {
             steps: expected_steps(case, &approaches, from),
             share_of_work: waiting.as_deref().map_or(1.0, mean_work),
             waiting,
+            approaches,
         }
     }
 

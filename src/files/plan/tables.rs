@@ -1,10 +1,10 @@
 //! Sizes of a run's tables.
 
 use crate::output::{RowSchedule, Schedule, gauge_records};
+use crate::preflight::Approach;
 use crate::run::columns::{BODIES, CONTACTS, GAUGES, HISTORY, LOADS, WITNESS, columns};
 use engine::measure::Gauges;
 use model::{Cadence, Case};
-use populate::close_pairs;
 
 /// Bytes of a number in a table with its comma: one with all its digits, and one that is zero or a small count.
 const NUMBER: f64 = 19.5;
@@ -16,12 +16,12 @@ const RECORDED: f64 = 8.0;
 /// Bytes of the tables of a case of so many steps. Of measures, fragments and crossings, which nobody knows before, there is
 /// nothing.
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
-pub(super) fn bytes(case: &Case, steps: f64) -> f64 {
+pub(super) fn bytes(case: &Case, approaches: &[Approach], steps: f64) -> f64 {
     let [rows, of_bodies] = RowSchedule::of(case).counts(steps, case.run.end_time);
     let width = |list| columns(case.dimension, list).len() as f64;
     let bodies = case.bodies.len() as f64;
     let mut each_row = NUMBER * width(HISTORY);
-    each_row += NUMBER * width(CONTACTS) * touching(case);
+    each_row += NUMBER * width(CONTACTS) * touching(case, approaches);
     each_row += NUMBER * width(LOADS) * case.load_names().count() as f64;
     let sides = 2.0 * case.measure.witnesses.len() as f64 * bodies;
     each_row += NOUGHT * width(WITNESS) * sides;
@@ -33,12 +33,14 @@ pub(super) fn bytes(case: &Case, steps: f64) -> f64 {
     rows * each_row + of_bodies * figures + gauges(case, steps)
 }
 
-/// Pairs of bodies with contact that begin near each other. The rows of others begin once they meet.
-#[allow(clippy::cast_precision_loss, reason = "an estimate")]
-fn touching(case: &Case) -> f64 {
-    let pushes = |&[a, b]: &[usize; 2]| case.contact_between(a, b).class().is_some();
-    let pairs = close_pairs(case);
-    pairs.into_iter().filter(pushes).count() as f64
+/// Mean number of pairs of bodies with contact that have met in a run, as far as that is foreseen.
+fn touching(case: &Case, approaches: &[Approach]) -> f64 {
+    let pushes = |pair: &&Approach| {
+        let [a, b] = pair.bodies;
+        case.contact_between(a, b).class().is_some()
+    };
+    let left = |pair: &Approach| (1.0 - pair.time / case.run.end_time).max(0.0);
+    approaches.iter().filter(pushes).map(left).sum()
 }
 
 /// Bytes of the readings of gauges.

@@ -1,10 +1,10 @@
 //! Times at which bodies meet, from their initial velocities.
 
-use std::cell::OnceCell;
+use rayon::prelude::*;
 
 use model::{Body, Case, Vec3};
 use numerics::meetings::{Meetings, MovingBox};
-use populate::{self, Searched, Wanted};
+use populate::{self, Searched, Searches, Wanted};
 
 /// Bodies closer than this many spacings touch.
 const TOUCH: f64 = 0.1;
@@ -61,14 +61,14 @@ pub fn approaches(case: &Case) -> Vec<Approach> {
         .iter()
         .map(|&index| populate::bounds(&case.bodies[index], case.dimension))
         .collect();
-    let searches: Vec<Search> = indices.iter().map(|_| Search::default()).collect();
+    let searches = Searches::new(case);
     let of_pair = |places: [usize; 2]| {
         let bodies = places.map(|place| indices[place]);
         let boxes = [ends[places[0]]?, ends[places[1]]?];
         may_meet(case, boxes, bodies, until).then_some(())?;
-        approach(case, boxes, bodies, places.map(|place| &searches[place]))
+        approach(&searches, boxes, bodies)
     };
-    pairs.into_iter().filter_map(of_pair).collect()
+    pairs.into_par_iter().filter_map(of_pair).collect()
 }
 
 /// False of two bodies whose shapes keep them from touching each other until a time (s), by the boxes of their particles.
@@ -99,15 +99,8 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
     !(driven || table || falls || spreads)
 }
 
-/// The sites of a body, for all pairs that it is of.
-type Search = OnceCell<Searched>;
-
-fn approach(
-    case: &Case,
-    boxes: [Ends; 2],
-    bodies: [usize; 2],
-    searches: [&Search; 2],
-) -> Option<Approach> {
+fn approach(searches: &Searches, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approach> {
+    let case = searches.case;
     let [first, second] = bodies.map(|body| &case.bodies[body]);
     if first.rigid.is_some() && second.rigid.is_some() {
         return None;
@@ -126,11 +119,10 @@ fn approach(
         time: f64::INFINITY,
     };
     let ways = [(first, second, velocity), (second, first, -velocity)];
-    for ((body, target, velocity), search) in ways.into_iter().zip(searches) {
-        let new = || Searched::new(body, case.dimension, &case.symmetry);
+    for ((body, target, velocity), index) in ways.into_iter().zip(bodies) {
         let sites = Sites {
             body,
-            search: search.get_or_init(new),
+            search: searches.of(index),
             dimension: case.dimension,
         };
         let (gap, time) = towards(&sites, target, velocity, until);

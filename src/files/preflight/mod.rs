@@ -5,6 +5,7 @@ mod case;
 mod costs;
 mod impact;
 mod initial;
+mod kinds;
 pub mod memory;
 mod meshes;
 mod sense;
@@ -15,11 +16,12 @@ pub use approach::{Approach, approaches};
 pub use case::{Across, across};
 pub use costs::{Costs, UNEVEN};
 pub use initial::beginning;
+pub use kinds::shortened;
 pub use steps::{expected_step, expected_steps};
 pub use waves::{TIMES, Waiting, Waves, mean_work};
 
 use model::{Body, Case};
-use populate::{self, close_pairs, overlap};
+use populate::{self, Searches, close_pairs, overlap};
 
 /// Overlaps below this are within the rounding of curved faces to a lattice (spacings).
 const SHALLOW: f64 = 0.2;
@@ -31,10 +33,11 @@ const SHALLOW: f64 = 0.2;
 #[must_use]
 pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     let mut messages = Vec::new();
+    let searches = Searches::new(case);
     let mut close = close_pairs(case).into_iter().peekable();
     for (index, body) in case.bodies.iter().enumerate() {
         while let Some([a, b]) = close.next_if(|pair| pair[0] == index) {
-            let found = overlap(case, a, b).filter(|overlap| overlap.depth > SHALLOW);
+            let found = overlap(&searches, a, b).filter(|overlap| overlap.depth > SHALLOW);
             if let Some(overlap) = found {
                 messages.push(format!(
                     "`{}` and `{}` begin {:.2} spacings within each other, which contact takes \

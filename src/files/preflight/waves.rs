@@ -224,7 +224,9 @@ fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
 /// The rest of a body, if it is at rest.
 fn still(case: &Case, body: &Body) -> Option<Still> {
     let rest = Rest::of(&case.materials[body.material])?;
+    // Sums of the total form pass over nothing.
     let is_still = body.rigid.is_none()
+        && !body.total
         && body.velocity.norm() == 0.0
         && body.speed_spread() == 0.0
         && body.initial.heat == Heat::Reference

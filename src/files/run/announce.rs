@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::say::{counted, note, say, seconds, warn};
 use crate::output::{Log, VERSION, commit};
+use crate::preflight::shortened;
 use comm::Comm;
 use engine::step::Simulation;
 
@@ -50,7 +51,7 @@ pub fn say_all(
         log.line(&text);
         say(&text);
     }
-    for warning in warnings {
+    for warning in shortened(warnings) {
         let text = format!("warning: {warning}");
         log.line(&text);
         warn(&text);

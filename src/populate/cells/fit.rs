@@ -190,7 +190,7 @@ struct Scale {
 
 impl Scale {
     fn of(cells: &Cells) -> Self {
-        let (lower, upper) = cells.solid.bounds();
+        let (lower, upper) = cells.ends;
         let mut origin = (lower + upper) * 0.5;
         for a in cells.dimension..3 {
             origin[a] = 0.0;

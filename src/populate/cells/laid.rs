@@ -16,6 +16,8 @@ const FACE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(crate) struct Cells {
     pub(super) solid: Solid,
+    /// Corners of a box about it (m).
+    pub(super) ends: (Vec3, Vec3),
     /// Lower sides by axis that symmetry planes cut off (m).
     pub(super) planes: Vec<(usize, f64)>,
     pub(super) dimension: usize,
@@ -64,7 +66,9 @@ impl Cells {
             let axis = lattice.axis.unwrap_or_else(Vec3::z);
             (rotation(&axis, lattice.angle), Vec3::zeros())
         };
+        let solid = body.shape.solid(dimension);
         let mut cells = Self {
+            ends: solid.bounds(),
             planes: symmetry
                 .iter()
                 .map(|plane| (plane.axis.index(), plane.position))
@@ -74,7 +78,7 @@ impl Cells {
             tile,
             turn,
             levels: Vec::new(),
-            solid: body.shape.solid(dimension),
+            solid,
         };
         let (mut spacing, mut first) = (lattice.spacing, 0);
         while spacing <= lattice.coarsest() {
@@ -95,7 +99,7 @@ impl Cells {
     /// Lays tiles about a centre (m), moved by a shift (tiles), until they cover those places in the
     /// solid where spacings lie in a range (m).
     fn lay(&self, centre: Vec3, shift: Vec3, [spacing, end]: [f64; 2], first: u64) -> Level {
-        let (mut lower, mut upper) = self.solid.bounds();
+        let (mut lower, mut upper) = self.ends;
         if let Some(grading) = &self.lattice.grading {
             let farthest = grading.distance(self.lattice.spacing, end);
             let (nearest_lower, nearest_upper) = grading.from.around(farthest);
@@ -146,7 +150,7 @@ impl Cells {
     /// Sites that a box about the solid would have at the finest spacing.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
     pub fn most_sites(&self) -> u64 {
-        let (lower, upper) = self.solid.bounds();
+        let (lower, upper) = self.ends;
         let along = |a: usize| ((upper[a] - lower[a]) / self.lattice.spacing).max(1.0);
         (0..self.dimension).fold(1.0, |n, a| n * along(a)).ceil() as u64
     }
@@ -271,6 +275,9 @@ impl Cells {
         if cuts.iter().any(|cut| cut.drops(&lower, &upper)) {
             return Lie::Outside;
         }
+        if self.is_beyond(&middle, reach) {
+            return Lie::Outside;
+        }
         let distance = self.solid.distance(&middle);
         if distance >= reach {
             return Lie::Outside;
@@ -302,8 +309,15 @@ impl Cells {
         }
     }
 
+    /// `true` if all as near to a position as `reach` (m) is outside the box about the solid.
+    fn is_beyond(&self, x: &Vec3, reach: f64) -> bool {
+        let (lower, upper) = &self.ends;
+        (0..self.dimension).any(|a| x[a] + reach < lower[a] || x[a] - reach > upper[a])
+    }
+
     fn holds(&self, x: &[f64; 3], cuts: &[Cut]) -> bool {
         cuts.iter().all(|cut| cut.keeps(x))
+            && !self.is_beyond(&Vec3::from(*x), 0.0)
             && self.solid.distance(&Vec3::from(*x)) < -FACE * self.lattice.spacing
     }
 

@@ -1,17 +1,17 @@
 //! The sites where a function of place is smallest, block by block.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 use super::fit::{LAYER, on_layer};
 use super::laid::{Block, Cells};
-use crate::Wanted;
 use crate::parts::{Parts, best};
 use crate::row::Cut;
+use crate::{Site, Wanted};
 use model::{Lattice, Vec3};
 
 /// The sites (m) of blocks of a level that have been looked at.
-pub(crate) type Seen = RefCell<BTreeMap<[u64; 3], Vec<[f64; 3]>>>;
+pub(crate) type Seen = Mutex<BTreeMap<[u64; 3], Vec<[f64; 3]>>>;
 
 /// Blocks of a level of what is filled by cells, within some cuts.
 struct Blocks<'a> {
@@ -34,24 +34,26 @@ impl<'a> Blocks<'a> {
             })
             .collect()
     }
+}
 
-    /// The sites (m) of a block, those that are fitted where they end nearly.
-    fn sites(&self, at: [u64; 3]) -> Vec<[f64; 3]> {
-        let block = Block {
-            level: self.level,
-            at,
-        };
-        let sites = self.cells.sites_of(block, self.cuts).into_iter();
-        sites
-            .map(|site| {
-                if self.cells.is_fitted() {
-                    on_layer(self.cells, &site.position)
-                } else {
-                    site.position
-                }
-            })
-            .collect()
-    }
+/// The sites (m) of a block within some cuts, those that are fitted where they end nearly.
+fn sites_near(cells: &Cells, block: Block, cuts: &[Cut]) -> Vec<[f64; 3]> {
+    let end = |site: Site| {
+        if cells.is_fitted() {
+            on_layer(cells, &site.position)
+        } else {
+            site.position
+        }
+    };
+    cells.sites_of(block, cuts).into_iter().map(end).collect()
+}
+
+/// All sites (m) within some cuts, those that are fitted where they end nearly.
+pub(crate) fn near_sites(cells: &Cells, cuts: &[Cut]) -> Vec<[f64; 3]> {
+    let blocks = cells.all_blocks(cuts);
+    blocks
+        .flat_map(|block| sites_near(cells, block, cuts))
+        .collect()
 }
 
 impl Parts for Blocks<'_> {
@@ -78,8 +80,14 @@ impl Parts for Blocks<'_> {
     }
 
     fn emit(&self, at: [u64; 3], emit: impl FnMut([f64; 3])) {
-        let mut seen = self.seen.borrow_mut();
-        let sites = seen.entry(at).or_insert_with(|| self.sites(at));
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let Self {
+            cells, level, cuts, ..
+        } = *self;
+        let block = Block { level, at };
+        let sites = seen
+            .entry(at)
+            .or_insert_with(|| sites_near(cells, block, cuts));
         sites.iter().copied().for_each(emit);
     }
 }
@@ -125,7 +133,7 @@ pub(crate) fn extremes(cells: &Cells, cuts: &[Cut]) -> Option<([f64; 3], [f64; 3
         limit: f64::INFINITY,
         any: false,
     };
-    let (mut least, most) = cells.solid.bounds();
+    let (mut least, most) = cells.ends;
     for &(a, at) in &cells.planes {
         least[a] = least[a].max(at);
     }

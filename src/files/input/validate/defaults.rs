@@ -1,5 +1,7 @@
 //! Measures of a body because of its shape: plates, bars and targets.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{Matrix3, SymmetricEigen};
 
 use model::{Bar, Case, Include, MeasureKind, Primitive, Slab, Solid, Vec3};
@@ -131,20 +133,61 @@ fn middle(case: &Case, body: usize) -> Vec3 {
     })
 }
 
-/// The other body that moves fastest towards a body: its velocity against it (m/s), and its index.
-fn striker(case: &Case, body: usize) -> Option<(Vec3, usize)> {
-    let (own, at) = (&case.bodies[body], middle(case, body));
-    let others = (0..case.bodies.len()).filter(|&other| other != body);
-    let all = others.map(|other| (case.bodies[other].velocity - own.velocity, other));
-    let comes = |(velocity, other): &(Vec3, usize)| (at - middle(case, *other)).dot(velocity) > 0.0;
-    let coming = all.filter(comes);
-    coming.max_by(|(a, _), (b, _)| a.norm().total_cmp(&b.norm()))
+/// The bodies of a case by what may strike what.
+pub struct Strikers<'a> {
+    case: &'a Case,
+    /// Middles (m) of the bodies.
+    middles: Vec<Vec3>,
+    /// Bodies by their velocity (m/s).
+    flights: Vec<(Vec3, Vec<usize>)>,
+}
+
+impl<'a> Strikers<'a> {
+    pub fn new(case: &'a Case) -> Self {
+        let all = 0..case.bodies.len();
+        let mut flights = BTreeMap::<_, (Vec3, Vec<usize>)>::new();
+        for (index, body) in case.bodies.iter().enumerate() {
+            let key: [u64; 3] = body.velocity.map(f64::to_bits).into();
+            let flight = flights.entry(key).or_default();
+            flight.0 = body.velocity;
+            flight.1.push(index);
+        }
+        Self {
+            case,
+            middles: all.map(|body| middle(case, body)).collect(),
+            flights: flights.into_values().collect(),
+        }
+    }
+
+    /// The other body that moves fastest towards a body, of equals the last: its velocity against it (m/s), and its index.
+    fn of(&self, body: usize) -> Option<(Vec3, usize)> {
+        let at = self.middles[body];
+        let mut fastest: Option<(Vec3, usize)> = None;
+        for (velocity, others) in &self.flights {
+            let velocity = velocity - self.case.bodies[body].velocity;
+            let (speed, is_first) = (velocity.norm_squared(), fastest.is_none());
+            let least = fastest.map_or(0.0, |(fastest, _)| fastest.norm_squared());
+            if speed < least || speed == 0.0 {
+                continue;
+            }
+            let comes = |other: &&usize| {
+                **other != body && (at - self.middles[**other]).dot(&velocity) > 0.0
+            };
+            let last = others.iter().rev().find(comes).copied();
+            let found = last.filter(|&other| {
+                is_first || speed > least || fastest.is_some_and(|(_, known)| other > known)
+            });
+            fastest = found.map(|other| (velocity, other)).or(fastest);
+        }
+        fastest
+    }
 }
 
 /// Out of the face of a body that the fastest other body moves towards: across its least extent if it is thin,
 /// else the one that is struck most squarely.
-pub fn struck_face(case: &Case, body: usize) -> Option<[f64; 3]> {
-    let (velocity, other) = striker(case, body)?;
+pub fn struck_face(strikers: &Strikers, body: usize) -> Option<[f64; 3]> {
+    let case = strikers.case;
+    let (velocity, other) = strikers.of(body)?;
     let own = Own::of(case, body).filter(|own| own.has_faces)?;
     let free = |axis: &&Vec3| suits_symmetry(case, &(**axis).into(), false);
     let axis = match own.axes.iter().find(free) {
@@ -154,7 +197,7 @@ pub fn struck_face(case: &Case, body: usize) -> Option<[f64; 3]> {
             along(a).total_cmp(&along(b))
         })?,
     };
-    let off = axis.dot(&(middle(case, other) - middle(case, body)));
+    let off = axis.dot(&(strikers.middles[other] - strikers.middles[body]));
     (off != 0.0).then(|| outward(axis, off))
 }
 
@@ -165,40 +208,45 @@ fn outward(axis: &Vec3, sense: f64) -> [f64; 3] {
 }
 
 /// To the end of a bar that strikes, or is struck: as it moves against what comes, or by its own velocity.
-pub fn foot(case: &Case, body: usize) -> Option<[f64; 3]> {
+pub fn foot(strikers: &Strikers, body: usize) -> Option<[f64; 3]> {
+    let case = strikers.case;
     let own = Own::of(case, body)?;
     let velocity = case.bodies[body].velocity;
-    let against = striker(case, body).map_or(velocity, |(velocity, _)| -velocity);
+    let against = strikers
+        .of(body)
+        .map_or(velocity, |(velocity, _)| -velocity);
     Some(outward(&own.axes[2], own.axes[2].dot(&against)))
 }
 
 /// The measure that a body's shape asks for.
-pub fn measure(case: &Case, body: usize) -> Option<MeasureKind> {
+pub fn measure(strikers: &Strikers, body: usize) -> Option<MeasureKind> {
+    let case = strikers.case;
     let matter = &case.bodies[body];
     if matter.rigid.is_some() {
         return None;
     }
     let own = Own::of(case, body)?;
-    let slab = |include| Some(Slab::new(case, body, struck_face(case, body)?, include));
+    let slab = |include| Some(Slab::new(case, body, struck_face(strikers, body)?, include));
     if own.is_thin() {
         return slab(Include::Intact).map(MeasureKind::Plate);
     }
     if own.is_long() {
         return Some(MeasureKind::Bar(Bar {
             body,
-            foot: foot(case, body)?,
+            foot: foot(strikers, body)?,
             spacing: matter.lattice.spacing,
         }));
     }
-    let (_, other) = striker(case, body)?;
+    if matter.velocity.norm() > 0.0 {
+        return None;
+    }
+    let (_, other) = strikers.of(body)?;
     let across = |way: Vec3| {
         let [low, high] = reach(case, other, &way);
         high - low
     };
     let largest = [Vec3::x(), Vec3::y(), Vec3::z()].map(across);
     let largest = largest.into_iter().fold(0.0, f64::max);
-    if matter.velocity.norm() == 0.0 && own.sides[1] >= LARGE * largest {
-        return slab(Include::All).map(MeasureKind::Target);
-    }
-    None
+    let is_large = own.sides[1] >= LARGE * largest;
+    is_large.then(|| slab(Include::All).map(MeasureKind::Target))?
 }

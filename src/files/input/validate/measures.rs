@@ -1,8 +1,10 @@
 //! Measures in `measures.csv`: plates, targets, bars, debris, regions and fronts.
 
+use std::cell::OnceCell;
+
 use toml::Spanned;
 
-use super::defaults;
+use super::defaults::{self, Strikers};
 use super::loads::given_name;
 use super::named::{body, fields, unique};
 use super::region::region;
@@ -33,6 +35,7 @@ const PIECE: f64 = 0.5;
 pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Diagnostic> {
     let mut reader = Reader {
         case,
+        strikers: OnceCell::new(),
         found: Vec::new(),
         marks: 0,
     };
@@ -65,12 +68,18 @@ pub fn measures(case: &Case, params: &MeasureParams) -> Result<Vec<Measure>, Dia
 
 struct Reader<'a> {
     case: &'a Case,
+    /// Known once a measure asks.
+    strikers: OnceCell<Strikers<'a>>,
     found: Vec<Measure>,
     /// Regions that move with matter so far.
     marks: usize,
 }
 
-impl Reader<'_> {
+impl<'a> Reader<'a> {
+    fn strikers(&self) -> &Strikers<'a> {
+        self.strikers.get_or_init(|| Strikers::new(self.case))
+    }
+
     fn add<T>(
         &mut self,
         table: &Spanned<T>,
@@ -134,7 +143,7 @@ impl Reader<'_> {
         let index = self.deforming(&params.body)?;
         let normal = match &params.normal {
             Some(normal) => self.direction("normal", normal, false)?,
-            None => defaults::struck_face(self.case, index).ok_or_else(|| {
+            None => defaults::struck_face(self.strikers(), index).ok_or_else(|| {
                 let title = "nothing moves towards a face of the body that would be struck";
                 Diagnostic::new(params.body.span(), title)
                     .help("give its `normal`, as in `normal = \"+z\"`")
@@ -157,7 +166,7 @@ impl Reader<'_> {
         let index = self.deforming(&params.body)?;
         let foot = match &params.foot {
             Some(foot) => self.direction("foot", foot, true)?,
-            None => defaults::foot(self.case, index).ok_or_else(|| {
+            None => defaults::foot(self.strikers(), index).ok_or_else(|| {
                 let title = "the body has no axis of its own that would be a bar's";
                 Diagnostic::new(params.body.span(), title)
                     .help("give its `foot`, as in `foot = \"-z\"`")
@@ -187,7 +196,7 @@ impl Reader<'_> {
             if measured || self.has(name) {
                 continue;
             }
-            if let Some(kind) = defaults::measure(self.case, index) {
+            if let Some(kind) = defaults::measure(self.strikers(), index) {
                 let name = name.clone();
                 self.found.push(Measure { name, kind });
             }

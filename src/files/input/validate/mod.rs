@@ -48,7 +48,7 @@ use model::{
     Axis, Body, Case, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
     SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
 };
-use populate::{close_pairs, overlap};
+use populate::{Searches, close_pairs, overlap};
 use region::KeepReader;
 use toml::Spanned;
 
@@ -163,8 +163,9 @@ fn check_overlaps(case: &Case, params: &[Spanned<BodyParams>]) -> Result<(), Dia
     let mut pairs = close_pairs(case);
     // The first body that lies in one before it.
     pairs.sort_by_key(|&[a, b]| [b, a]);
+    let searches = Searches::new(case);
     for [a, b] in pairs {
-        let found = overlap(case, a, b).filter(|found| found.depth > MOST_OVERLAP);
+        let found = overlap(&searches, a, b).filter(|found| found.depth > MOST_OVERLAP);
         if let Some(found) = found {
             let title = format!(
                 "`{}` begins {:.1} spacings within `{}`, near {}",
