@@ -29,8 +29,8 @@
 //! 0`. For aluminium 2024, `μ_N = 1.18` is reached by the shock of a symmetric impact at 21 km/s;
 //! the floor of D lies at `μ = 2.66`.
 
-use super::{EquationOfState, PointResponse, Response, map};
-use crate::{Lanes, at_least, at_most};
+use super::{EquationOfState, PointResponse, Response};
+use crate::{LANES, Lanes, at_least, at_most};
 
 /// Grüneisen parameter of a monatomic gas.
 const THIN: f64 = 2.0 / 3.0;
@@ -83,7 +83,12 @@ impl EquationOfState for MieGruneisen {
     #[inline(always)]
     fn of_batch(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
         let bounds = self.bounds();
-        map(rho, e, |rho, e| self.bounded_response(bounds, rho0, rho, e))
+        // A loop and no closure, which may be compiled apart from its caller, without its instructions.
+        let mut response = Response::default();
+        for k in 0..LANES {
+            response.set(k, self.bounded_response(bounds, rho0, rho[k], e[k]));
+        }
+        response
     }
 }
 

@@ -17,7 +17,7 @@ pub struct PointResponse {
 }
 
 /// [`PointResponse`] of each point of a batch.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Response {
     /// Pressures (Pa).
     pub pressure: Lanes,
@@ -25,6 +25,16 @@ pub struct Response {
     pub dp_drho: Lanes,
     /// ∂p/∂e (kg/m³).
     pub dp_de: Lanes,
+}
+
+impl Response {
+    /// Takes the response of one point to a lane.
+    #[inline(always)]
+    fn set(&mut self, k: usize, at: PointResponse) {
+        self.pressure[k] = at.pressure;
+        self.dp_drho[k] = at.dp_drho;
+        self.dp_de[k] = at.dp_de;
+    }
 }
 
 /// One equation of state.
@@ -67,7 +77,11 @@ pub trait EquationOfState: Listed {
     /// [`Self::at`] of a batch.
     #[inline(always)]
     fn of_batch(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
-        map(rho, e, |rho, e| self.at(rho0, rho, e))
+        let mut response = Response::default();
+        for k in 0..LANES {
+            response.set(k, self.at(rho0, rho[k], e[k]));
+        }
+        response
     }
 }
 
@@ -168,20 +182,3 @@ equations_of_state! {
     ideal_gas: IdealGas;
 }
 pub use linear::LinearForm;
-
-/// Applies the response of one point to all lanes.
-#[inline(always)]
-fn map(rho: &Lanes, e: &Lanes, point: impl Fn(f64, f64) -> PointResponse) -> Response {
-    let mut response = Response {
-        pressure: [0.0; LANES],
-        dp_drho: [0.0; LANES],
-        dp_de: [0.0; LANES],
-    };
-    for k in 0..LANES {
-        let at = point(rho[k], e[k]);
-        response.pressure[k] = at.pressure;
-        response.dp_drho[k] = at.dp_drho;
-        response.dp_de[k] = at.dp_de;
-    }
-    response
-}

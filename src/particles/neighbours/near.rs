@@ -30,7 +30,7 @@ pub(super) fn near_box<V: Lanes>(
     let (low, high) = (splat_each::<V>(*lower), splat_each::<V>(*upper));
     let along = sequence.along(group);
     let (from, to) = (lower[along] - far, upper[along] + far);
-    sequence.columns_near(group, lower, upper, far, |[a, b], column| {
+    for ([a, b], column) in sequence.columns_near(group, lower, upper, far) {
         let hint = &mut hints[(a & 7) << 3 | b & 7];
         *hint = sequence.seek::<V>(group, &column, from, *hint);
         let mut first = *hint;
@@ -38,11 +38,7 @@ pub(super) fn near_box<V: Lanes>(
             if eight.coordinates[along][0] > to {
                 break;
             }
-            let gap = |a: usize| {
-                let x = V::read(eight.coordinates[a]);
-                low[a].sub(x).max(x.sub(high[a])).max(V::splat(0.0))
-            };
-            let [x, y, z] = [gap(0), gap(1), gap(2)];
+            let [x, y, z] = gaps(&eight, &low, &high);
             let square = z.mul_add(z, y.mul_add(y, x.mul(x)));
             let range = range(&eight);
             let mut bits = square.less_than(range.mul(range));
@@ -53,7 +49,18 @@ pub(super) fn near_box<V: Lanes>(
             found(first, bits, &eight, square);
             first += LANES;
         }
-    });
+    }
+}
+
+/// Distances of images from a box along each axis (m).
+#[inline(always)]
+fn gaps<V: Lanes>(eight: &Eight, low: &[V; 3], high: &[V; 3]) -> [V; 3] {
+    let mut gaps = [V::splat(0.0); 3];
+    for a in 0..3 {
+        let x = V::read(eight.coordinates[a]);
+        gaps[a] = low[a].sub(x).max(x.sub(high[a])).max(gaps[a]);
+    }
+    gaps
 }
 
 /// Writes `first + k` for each set bit k at `list[used..]`; returns the new end.

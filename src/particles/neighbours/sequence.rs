@@ -303,9 +303,8 @@ impl Sequence {
         }
     }
 
-    /// Calls `visit`, in canonical order of the cells, with the columns of a group that have images within
-    /// `range` (m) of the box `lower..=upper` (m) as far as the directions across tell: two
-    /// indices across and the indices of the column.
+    /// The columns of a group, in canonical order of the cells, that have images within `range` (m) of the box
+    /// `lower..=upper` (m) as far as the directions across tell.
     #[inline(always)]
     pub(super) fn columns_near(
         &self,
@@ -313,38 +312,30 @@ impl Sequence {
         lower: &[f64; 3],
         upper: &[f64; 3],
         range: f64,
-        mut visit: impl FnMut([usize; 2], Range<usize>),
-    ) {
+    ) -> ColumnsNear<'_> {
         let group = &self.groups[group];
+        let grid = &group.grid;
         let apart =
             |a: usize| lower[a] - range > group.upper[a] || group.lower[a] > upper[a] + range;
-        if group.images.is_empty() || (0..3).any(apart) {
-            return;
-        }
-        let grid = &group.grid;
+        let is_apart = group.images.is_empty() || (0..3).any(apart);
         // No column twice: no range is longer than a period.
         let cells = |k: usize| {
             let axis = grid.across[k];
             let low = grid.cell(k, lower[axis] - range).max(group.first[k]);
             let high = grid.cell(k, upper[axis] + range).min(group.last[k]);
-            low..=high.min(low.saturating_add(grid.period(k) - 1))
+            low..high.min(low.saturating_add(grid.period(k) - 1)).saturating_add(1)
         };
         let [a, b] = grid.across;
-        let second = cells(1);
-        for first in cells(0) {
-            let row = grid.after(0, group.first[0], first);
-            for other in second.clone() {
-                let place = grid.after(1, group.first[1], other);
-                let column = group.columns.start + row * group.size[1] + place;
-                let (start, end) = (
-                    self.starts[column] as usize,
-                    self.starts[column + 1] as usize,
-                );
-                let gap = self.walls[column].gap([lower[a], lower[b]], [upper[a], upper[b]]);
-                if start < end && gap < range * range {
-                    visit([row, place], start..end);
-                }
-            }
+        let rows = if is_apart { 0..0 } else { cells(0) };
+        ColumnsNear {
+            sequence: self,
+            group,
+            across: [[lower[a], lower[b]], [upper[a], upper[b]]],
+            square: range * range,
+            rows,
+            row: 0,
+            of_row: if is_apart { 0..0 } else { cells(1) },
+            left: 0..0,
         }
     }
 
@@ -358,7 +349,7 @@ impl Sequence {
         mut visit: impl FnMut(usize, f64),
     ) {
         let along = self.along(group);
-        self.columns_near(group, point, point, range, |_, column| {
+        for (_, column) in self.columns_near(group, point, point, range) {
             let x = &self.coordinates[along][column.clone()];
             let first = x.partition_point(|&x| x < point[along] - range);
             for index in column.start + first..column.end {
@@ -372,7 +363,7 @@ impl Sequence {
                     visit(index, square);
                 }
             }
-        });
+        }
     }
 
     /// The position of an image (m).
@@ -428,5 +419,47 @@ impl Sequence {
     #[inline(always)]
     pub(super) fn along(&self, group: usize) -> usize {
         self.groups[group].grid.along
+    }
+}
+
+/// Columns near a box: an iterator and no closure, which may be compiled apart from its caller, without its instructions.
+pub(super) struct ColumnsNear<'a> {
+    sequence: &'a Sequence,
+    group: &'a Group,
+    /// The lower and the upper corner of the box across the columns (m).
+    across: [[f64; 2]; 2],
+    /// Square of the range (m²).
+    square: f64,
+    /// Cells along the first axis that are left, and the place of the last one.
+    rows: Range<u32>,
+    row: usize,
+    /// Cells along the second axis: all of a row, and those that are left of this one.
+    of_row: Range<u32>,
+    left: Range<u32>,
+}
+
+impl Iterator for ColumnsNear<'_> {
+    /// Two indices across, and the indices of the column.
+    type Item = ([usize; 2], Range<usize>);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        let (group, starts) = (self.group, &self.sequence.starts);
+        loop {
+            let Some(cell) = self.left.next() else {
+                let cell = self.rows.next()?;
+                self.row = group.grid.after(0, group.first[0], cell);
+                self.left = self.of_row.clone();
+                continue;
+            };
+            let place = group.grid.after(1, group.first[1], cell);
+            let column = group.columns.start + self.row * group.size[1] + place;
+            let (start, end) = (starts[column] as usize, starts[column + 1] as usize);
+            let [lower, upper] = self.across;
+            let gap = self.sequence.walls[column].gap(lower, upper);
+            if start < end && gap < self.square {
+                return Some(([self.row, place], start..end));
+            }
+        }
     }
 }

@@ -66,10 +66,7 @@ impl Watch<'_> {
         let along = sequence.along(group);
         let (from, to) = (lower[along] - far, upper[along] + far);
         let mut marks = 0;
-        sequence.columns_near(group, lower, upper, far, |[a, b], column| {
-            if marks != 0 {
-                return;
-            }
+        for ([a, b], column) in sequence.columns_near(group, lower, upper, far) {
             let hint = &mut self.hints[(a & 7) << 3 | b & 7];
             *hint = sequence.seek::<V>(group, &column, from, *hint);
             for eight in sequence.eights(*hint..column.end) {
@@ -79,8 +76,11 @@ impl Watch<'_> {
                 // Also of those behind the end, to be on the safe side.
                 marks |= u64::from_le_bytes(*eight.special) & NOT_RESTING;
             }
-        });
-        marks == 0
+            if marks != 0 {
+                return false;
+            }
+        }
+        true
     }
 
     /// True if no image of a group is near a box (m), by no more than `far` (m) along each axis.
@@ -93,14 +93,14 @@ impl Watch<'_> {
     ) -> bool {
         let sequence = self.sequence;
         let along = sequence.along(group);
-        let mut is_far = true;
-        sequence.columns_near(group, lower, upper, far, |_, column| {
-            if is_far {
-                let first = sequence.seek::<V>(group, &column, lower[along] - far, column.start);
-                is_far = first == column.end
-                    || sequence.coordinates(along, first)[0] > upper[along] + far;
+        for (_, column) in sequence.columns_near(group, lower, upper, far) {
+            let first = sequence.seek::<V>(group, &column, lower[along] - far, column.start);
+            let is_far =
+                first == column.end || sequence.coordinates(along, first)[0] > upper[along] + far;
+            if !is_far {
+                return false;
             }
-        });
-        is_far
+        }
+        true
     }
 }
