@@ -50,6 +50,54 @@ pub struct SphOptions {
     pub hourglass: f64,
 }
 
+/// With this α and `courant` and more viscosity waves of any length die down in the corrected form; whatever the viscosity
+/// they do, or grow too slowly to matter, with the shorter step.
+const ENOUGH_VISCOSITY: f64 = 0.2;
+const LONG_STEP: f64 = 0.5;
+const SHORT_STEP: f64 = 0.25;
+
+impl SphOptions {
+    /// The `courant` up to which short waves of the corrected form lose more by viscosity than they grow: by (ω Δt)⁴/8 a
+    /// step, and viscosity takes α ω Δt times a constant, so that Δt goes with the cube root of α (theory page "Time
+    /// integration").
+    #[must_use]
+    pub fn longest_courant(&self) -> f64 {
+        let longest = LONG_STEP * (self.alpha / ENOUGH_VISCOSITY).cbrt();
+        // Rounded down, so that who takes this number is below.
+        (100.0 * longest.max(SHORT_STEP)).floor() / 100.0
+    }
+}
+
+/// Factors of steps where a case states none: impacts in space hold with longer ones (theory page "Time integration").
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DefaultFactors {
+    /// Of the sound and viscosity criterion.
+    pub courant: f64,
+    /// Of the acceleration criterion.
+    pub force: f64,
+    /// Of the contact criterion.
+    pub contact: f64,
+}
+
+impl DefaultFactors {
+    /// Of a case of so many dimensions with these sums.
+    #[must_use]
+    pub fn of(dimension: usize, sph: &SphOptions) -> Self {
+        if dimension < 3 {
+            return Self {
+                courant: 0.5,
+                force: 0.25,
+                contact: 0.8,
+            };
+        }
+        Self {
+            courant: sph.longest_courant().clamp(0.5, 0.65),
+            force: 0.2,
+            contact: 1.0,
+        }
+    }
+}
+
 /// Stability factors of the explicit scheme.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeStepOptions {

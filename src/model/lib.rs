@@ -41,8 +41,8 @@ pub use closing_speeds::ClosingSpeeds;
 pub use cloud::{Cloud, Quantity, cube, edge};
 pub use contact::*;
 pub use control::{
-    ClockInterval, DomainOptions, OutputOptions, Precision, RunControl, Sharing, SmoothingLength,
-    SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
+    ClockInterval, DefaultFactors, DomainOptions, OutputOptions, Precision, RunControl, Sharing,
+    SmoothingLength, SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};

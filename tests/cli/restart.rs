@@ -211,6 +211,12 @@ spacing = "0.1 mm"
 [run]
 end_time = "3 us"
 
+# Steps that end before the splinter is at the plane.
+[time_step]
+courant = 0.5
+force = 0.25
+contact = 0.8
+
 [domain]
 axis = "x"
 balance_every = 0

@@ -71,7 +71,11 @@ impl Smoothing {
     #[inline]
     #[must_use]
     pub fn reach_of(&self, body: usize, mass: f64, length: f64) -> f64 {
-        length.max(self.at_start(body, mass)) * self.stretch[body]
+        let longest = match self.rule {
+            SmoothingLength::Constant => length,
+            SmoothingLength::Variable { .. } => length.max(self.at_start(body, mass)),
+        };
+        longest * self.stretch[body]
     }
 
     /// Sets how much farther the particles of a body reach than by their lengths.

@@ -11,11 +11,6 @@ use populate;
 const MOST_FRICTION: f64 = 2.0;
 /// Viscosity is 1 or 2 in most publications, and shortens the step in proportion.
 const MOST_VISCOSITY: f64 = 10.0;
-/// With this `alpha` and `courant` and more viscosity waves of any length die down in the corrected form;
-/// whatever the viscosity they do, or grow too slowly to matter, with the shorter step.
-const ENOUGH_VISCOSITY: f64 = 0.2;
-const LONG_STEP: f64 = 0.5;
-const SHORT_STEP: f64 = 0.25;
 /// Spacings of two bodies in contact over each other: at 3 the mean smoothing length is .87 of the
 /// wider spacing (h = 1.3 Δp), and sums over the wide particles begin to show each of them.
 const MOST_RATIO: f64 = 3.0;
@@ -234,16 +229,12 @@ fn coefficients(case: &Case, messages: &mut Vec<String>) {
     }
 }
 
-/// Steps in which short waves grow by more than the viscosity takes from them: by (ω Δt)⁴/8 a step, and the
-/// viscosity takes α ω Δt times a constant, so that Δt goes with the cube root of α (theory page "Time
-/// integration").
+/// Steps in which short waves grow by more than the viscosity takes from them.
 fn viscosity_for_step(case: &Case, messages: &mut Vec<String>) {
-    let share = (case.sph.alpha / ENOUGH_VISCOSITY).cbrt();
-    // Rounded down, so that the advised value gives no warning.
-    let longest = (100.0 * (LONG_STEP * share).max(SHORT_STEP)).floor() / 100.0;
+    let longest = case.sph.longest_courant();
     let deforms = case.bodies.iter().any(|body| body.rigid.is_none());
     let corrected = case.sph.form == SphForm::Corrected;
-    if deforms && corrected && share < 1.0 && case.time_step.courant > longest {
+    if deforms && corrected && case.time_step.courant > longest {
         messages.push(format!(
             "`alpha` is {}: so little viscosity leaves short waves to grow, and energy with them, in steps \
              of `courant` = {}; take {longest:.2}",

@@ -323,7 +323,9 @@ impl Sequence {
             let axis = grid.across[k];
             let low = grid.cell(k, lower[axis] - range).max(group.first[k]);
             let high = grid.cell(k, upper[axis] + range).min(group.last[k]);
-            low..high.min(low.saturating_add(grid.period(k) - 1)).saturating_add(1)
+            low..high
+                .min(low.saturating_add(grid.period(k) - 1))
+                .saturating_add(1)
         };
         let [a, b] = grid.across;
         let rows = if is_apart { 0..0 } else { cells(0) };

@@ -45,8 +45,8 @@ use super::source::Diagnostic;
 use material::{Eos, Material};
 use model::readable::Readable;
 use model::{
-    Axis, Body, Case, DomainOptions, MeasureOptions, NumericalLimits, OutputOptions, RunControl,
-    SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
+    Axis, Body, Case, DefaultFactors, DomainOptions, MeasureOptions, NumericalLimits,
+    OutputOptions, RunControl, SmoothingLength, SphOptions, SymmetryPlane, TimeStepOptions,
 };
 use populate::{Searches, close_pairs, overlap};
 use region::KeepReader;
@@ -86,7 +86,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         folder,
     }
     .all(params)?;
-    let time_step = time_step(&params.time_step, &sph, &bodies, &materials)?;
+    let time_step = time_step(dimension, &params.time_step, &sph, &bodies, &materials)?;
     let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
     let (domain, output) = domain_and_output(params, &boxes, &materials)?;
     let mut case = Case {
@@ -280,6 +280,7 @@ fn smallest_smoothing(sph: &SphOptions) -> f64 {
 }
 
 fn time_step(
+    dimension: usize,
     params: &TimeStepParams,
     sph: &SphOptions,
     bodies: &[Body],
@@ -289,10 +290,11 @@ fn time_step(
         let shortest = body.smoothing_length * smallest_smoothing(sph);
         materials[body.material].diffusion_time(shortest)
     });
+    let default = DefaultFactors::of(dimension, sph);
     Ok(TimeStepOptions {
-        courant: params.courant()?,
-        force: params.force()?,
-        contact: params.contact()?,
+        courant: params.courant()?.unwrap_or(default.courant),
+        force: params.force()?.unwrap_or(default.force),
+        contact: params.contact()?.unwrap_or(default.contact),
         max: diffusion.fold(params.max()?.unwrap_or(f64::INFINITY), f64::min),
     })
 }
