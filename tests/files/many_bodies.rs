@@ -109,7 +109,9 @@ fn bricks(rows: u32) -> String {
                     "shape.box = {{ size = [\"1.3 mm\", \"1.3 mm\", \"1.3 mm\"], centre = [{centre}] }}"
                 );
             }
-            None => text += &format!("{line}\n"),
+            None => {
+                let _ = writeln!(text, "{line}");
+            }
         }
     }
     text
