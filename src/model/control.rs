@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::{Axis, Cadence, Region, TermOptions};
+use super::{Axis, Body, Cadence, Region, TermOptions};
 
 /// True if the smoothing length of the SPH sums follows the density. Contact always keeps the
 /// reference h₀.
@@ -80,10 +80,10 @@ pub struct DefaultFactors {
 }
 
 impl DefaultFactors {
-    /// Of a case of so many dimensions with these sums.
+    /// Of a case of so many dimensions with these sums. What is squeezed in the total form needs the shorter ones.
     #[must_use]
-    pub fn of(dimension: usize, sph: &SphOptions) -> Self {
-        if dimension < 3 {
+    pub fn of(dimension: usize, sph: &SphOptions, bodies: &[Body]) -> Self {
+        if dimension < 3 || bodies.iter().any(|body| body.total) {
             return Self {
                 courant: 0.5,
                 force: 0.25,

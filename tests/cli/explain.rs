@@ -43,10 +43,7 @@ fn a_case_is_explained_key_by_key() {
     line("shape.sphere.radius = \"0.4 mm\" ", "# --set");
     line("alpha = 0.7 ", "# --set");
     line("# beta = 2 ", "# default");
-    line(
-        "# time_step.courant ",
-        "less with a small `alpha`; else 0.5",
-    );
+    line("# time_step.courant ", "with a body in the total form");
     line("# time_step.max ", "but what materials demand");
     line("# history_every ", "# default: 250 rows a run");
     line("density = \"8.9 g/cm^3\" ", &format!("# {path}:5"));

@@ -242,13 +242,13 @@ optional_tables! {
     /// `[time_step]`
     TimeStepParams {
         /// Factor of the sound and viscosity criterion.
-        courant: Option<Spanned<f64>>, UpToOne => "0.65 in three dimensions, less with a small `alpha`; else 0.5";
+        courant: Option<Spanned<f64>>, UpToOne => "0.65 in three dimensions, less with a small `alpha`; 0.5 in fewer, and with a body in the total form";
         /// Factor of the acceleration criterion.
-        force: Option<Spanned<f64>>, UpToOne => "0.2 in three dimensions, else 0.25";
+        force: Option<Spanned<f64>>, UpToOne => "0.2 in three dimensions, 0.25 in fewer, and with a body in the total form";
         // Of a bound that is safe by itself; .55 of it is what the first moments of an impact at
         // h = 1.3 Δp take by their sound criterion, so that contact does not slow them down.
         /// Safety factor of the contact criterion.
-        contact: Option<Spanned<f64>>, UpToOne => "1 in three dimensions, else 0.8";
+        contact: Option<Spanned<f64>>, UpToOne => "1 in three dimensions, 0.8 in fewer, and with a body in the total form";
         /// Upper bound.
         max: Option<Placed<Time>>, Positive => "none but what materials demand";
     }

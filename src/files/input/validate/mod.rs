@@ -120,6 +120,14 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
     total::resolve(case, &params.body)?;
+    // Its defaults hang on the forms of bodies.
+    case.time_step = time_step(
+        case.dimension,
+        &params.time_step,
+        &case.sph,
+        &case.bodies,
+        &case.materials,
+    )?;
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
     across::check(case, params)?;
@@ -290,7 +298,7 @@ fn time_step(
         let shortest = body.smoothing_length * smallest_smoothing(sph);
         materials[body.material].diffusion_time(shortest)
     });
-    let default = DefaultFactors::of(dimension, sph);
+    let default = DefaultFactors::of(dimension, sph, bodies);
     Ok(TimeStepOptions {
         courant: params.courant()?.unwrap_or(default.courant),
         force: params.force()?.unwrap_or(default.force),
