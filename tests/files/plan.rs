@@ -3,6 +3,8 @@
 use crate::common::random::Random;
 use comm::Comm;
 use engine::domain::{Balance, Decomposition, NestedSlabs, RankSpeeds, Sent, Tally, tally};
+use files::input::parse;
+use files::plan::Particles;
 use model::{Axis, SymmetryPlane};
 use particles::Mirrors;
 
@@ -134,4 +136,25 @@ fn many_ranks_are_soon_counted() {
         assert_eq!(told.iter().map(|one| one.halo).sum::<u64>(), sent);
         assert!(told.iter().all(|one| one.halo == one.images));
     }
+}
+
+/// A snapshot that tells no smoothing lengths has those of the start.
+#[test]
+fn particles_without_lengths_reach_as_far_as_at_the_start() {
+    let case = parse(
+        "lengths",
+        include_str!("../../inputs/quarter-impact/case.toml"),
+        &[],
+    );
+    let case = case.unwrap_or_else(|error| panic!("{error}"));
+    let start = Particles::at_start(&case);
+    let rows = start.positions.iter().zip(&start.body);
+    let rows = rows.map(|(position, &body)| {
+        let body = body as usize;
+        let mass = case.particle_mass(&case.bodies[body]);
+        (*position, body, mass, Ok(0.0))
+    });
+    let saved = Particles::of(&case, rows).unwrap();
+    assert!(saved.reach.iter().all(|&reach| reach > 0.0));
+    assert_eq!(saved.reach, start.reach);
 }

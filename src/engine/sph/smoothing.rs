@@ -63,19 +63,19 @@ impl Smoothing {
     #[inline]
     #[must_use]
     pub fn reach(&self, particles: &ParticleStore, i: usize) -> f64 {
-        let (body, mass) = (particles.body[i] as usize, particles.mass[i]);
-        self.reach_of(body, mass, particles.smoothing_length[i])
+        let (body, length) = (particles.body[i] as usize, particles.smoothing_length[i]);
+        match self.rule {
+            // It has its length of the start.
+            SmoothingLength::Constant => length * self.stretch[body],
+            SmoothingLength::Variable { .. } => self.reach_of(body, particles.mass[i], length),
+        }
     }
 
     /// The same of a particle of `body` with a mass (kg) and a length (m).
     #[inline]
     #[must_use]
     pub fn reach_of(&self, body: usize, mass: f64, length: f64) -> f64 {
-        let longest = match self.rule {
-            SmoothingLength::Constant => length,
-            SmoothingLength::Variable { .. } => length.max(self.at_start(body, mass)),
-        };
-        longest * self.stretch[body]
+        length.max(self.at_start(body, mass)) * self.stretch[body]
     }
 
     /// Sets how much farther the particles of a body reach than by their lengths.
