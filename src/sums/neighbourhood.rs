@@ -84,14 +84,15 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
         position: &[V; 3],
         divisor: D,
     ) -> Pairs<'a, V, S, D> {
+        let one = V::splat(1.0);
         let mut pairs = Pairs {
             around: *self,
             position: *position,
             h: self.h(),
             divisor,
             done: 0,
-            next: Divided::of::<S>(Distance::of(V::splat(1.0)), V::splat(1.0), None),
-            after: Distance::of(V::splat(1.0)),
+            next: (Divided::of::<S>(Distance::of(one), one, None), divisor.before()),
+            after: Distance::of(one),
         };
         if !self.neighbours.is_empty() {
             // The compiler must not know how these come about: where they and those of the loop do alike, it
@@ -105,19 +106,30 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 
 /// Divisor of a sum over pairs beside their distances.
 pub(crate) trait Divisor<V>: Copy {
+    /// What it is made of, for the sum.
+    type Parts: Copy;
+
+    /// Any parts, before the first neighbour.
+    fn before(&self) -> Self::Parts;
+
     /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
-    fn of(&self, index: usize, square: V, h: V) -> Option<V>;
+    fn of(&self, index: usize, square: V, h: V) -> (Option<V>, Self::Parts);
 }
 
 impl<V> Divisor<V> for () {
+    type Parts = ();
+
     #[inline(always)]
-    fn of(&self, _: usize, _: V, _: V) -> Option<V> {
-        None
+    fn before(&self) {}
+
+    #[inline(always)]
+    fn of(&self, _: usize, _: V, _: V) -> (Option<V>, ()) {
+        (None, ())
     }
 }
 
 /// Eight receivers and one neighbour.
-pub(crate) struct Pair<'a, V> {
+pub(crate) struct Pair<'a, V, P> {
     /// Index of the neighbour among all sources.
     pub(crate) index: usize,
     /// The neighbour.
@@ -130,17 +142,19 @@ pub(crate) struct Pair<'a, V> {
     pub(crate) h: V,
     /// The inverse of the divisor, 1 without one.
     pub(crate) beside: V,
+    /// What the divisor is made of.
+    pub(crate) parts: P,
 }
 
 /// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
 /// both take long, and processors look no farther than some sixty operations that wait.
-pub(crate) struct Pairs<'a, V, S, D> {
+pub(crate) struct Pairs<'a, V, S, D: Divisor<V>> {
     around: Neighbourhood<'a, S>,
     position: [V; 3],
     h: V,
     divisor: D,
     done: usize,
-    next: Divided<V>,
+    next: (Divided<V>, D::Parts),
     after: Distance<V>,
 }
 
@@ -166,19 +180,20 @@ impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
     }
 
     #[inline(always)]
-    fn divide(&self, ahead: usize, far: Distance<V>) -> Divided<V> {
+    fn divide(&self, ahead: usize, far: Distance<V>) -> (Divided<V>, D::Parts) {
         let index = self.index(ahead);
         let Sources { lengths, scale, .. } = self.around.sources;
         let h = scale.length(self.h, length::<S>(lengths, index));
-        Divided::of::<S>(far, h, self.divisor.of(index, far.square, h))
+        let (divisor, parts) = self.divisor.of(index, far.square, h);
+        (Divided::of::<S>(far, h, divisor), parts)
     }
 }
 
 impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> {
-    type Item = Pair<'a, V>;
+    type Item = Pair<'a, V, D::Parts>;
 
     #[inline(always)]
-    fn next(&mut self) -> Option<Pair<'a, V>> {
+    fn next(&mut self) -> Option<Self::Item> {
         let Sources {
             records,
             lengths,
@@ -187,7 +202,7 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
         if self.done == self.around.neighbours.len() {
             return None;
         }
-        let (index, now) = (self.index(0), self.next);
+        let (index, (now, parts)) = (self.index(0), self.next);
         let Distance { square, distance } = now.far;
         self.next = self.divide(1, self.after);
         self.after = self.distance(2);
@@ -204,6 +219,7 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
             kernel: scale.kernel(distance, now.inverse_h),
             h: scale.length(self.h, length::<S>(lengths, index)),
             beside: now.beside,
+            parts,
         })
     }
 }

@@ -19,13 +19,13 @@ pub use forces::TotalRecord;
 
 use super::corrected::{add_moment, spin};
 use super::limiter::limiter;
-use super::neighbourhood::Neighbourhood;
+use super::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{
     Symmetric, along, cross, dot, faded, full, product, store_all, times, transposed,
 };
-use numerics::lanes::{F64x8, Lanes};
+use numerics::lanes::{F64x8, LANES, Lanes};
 
 /// e⁴ of the fade of rates, at e = .15: as the deformation gradient is exact up to faces, rates have to be nearly so.
 const FADE: f64 = 0.15 * 0.15 * 0.15 * 0.15;
@@ -36,11 +36,55 @@ const THICKNESS: f64 = 1e-6;
 /// Least determinant of a deformation gradient that is inverted: whoever has less leaves the form.
 pub const LEAST_DETERMINANT: f64 = 1e-3;
 
+/// Sums over the initial pairs of a particle that stay what they are.
+#[derive(Debug, Clone, Copy, Default, bytemuck::Zeroable)]
+pub struct InitialSums {
+    /// `M`, components xx, yy, zz, xy, xz, yz.
+    pub moment: [f64; 6],
+    /// `Σ w_ij R²` with `w_ij = −V⁰_j R |∇W_ij|` (m²).
+    pub square: f64,
+}
+
+/// Makes the [`InitialSums`] of eight receivers.
+#[derive(Debug, Clone, Copy)]
+pub struct InitialPairs<'a, S> {
+    /// The receivers and their neighbours at their initial positions, with initial volumes.
+    pub around: Neighbourhood<'a, S>,
+}
+
+impl<S: PairScale> Vectorised for InitialPairs<'_, S> {
+    type Output = [InitialSums; LANES];
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> [InitialSums; LANES] {
+        let (initial, _) = self.around.motion::<V>();
+        let (mut moment, mut square) = ([V::splat(0.0); 6], V::splat(0.0));
+        for pair in self.around.pairs(&initial) {
+            let volume = V::splat(pair.source.volume);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
+            add_moment(&mut moment, &pair.separation.r, factor);
+            let weight = factor.mul(pair.separation.square);
+            square = pair.separation.square.mul_add(weight, square);
+        }
+        let (moment, square) = (store_all(&moment), square.store());
+        let mut sums = [InitialSums::default(); LANES];
+        for (k, own) in sums.iter_mut().enumerate() {
+            for c in 0..6 {
+                own.moment[c] = moment[c].0[k];
+            }
+            own.square = square.0[k];
+        }
+        sums
+    }
+}
+
 /// The first sweep over the initial pairs of eight receivers.
 #[derive(Debug, Clone, Copy)]
 pub struct TotalGradient<'a, S> {
     /// The receivers and their neighbours at their initial positions, with initial volumes.
     pub around: Neighbourhood<'a, S>,
+    /// What the initial pairs of particles have told, by place.
+    pub initial: &'a [InitialSums],
     /// Positions of all particles and images (m).
     pub positions: &'a [[f64; 3]],
     /// Number of dimensions.
@@ -87,39 +131,35 @@ struct Sums<V> {
     rate: [V; 9],
     /// `F₀`.
     deformation: [V; 9],
-    /// `M`.
-    moment: Symmetric<V>,
     /// `Σ w_ij (v_j − v_i)` with `w_ij = −V⁰_j R |∇W_ij|`.
     velocity: [V; 3],
     /// `Σ w_ij (x_i − x_j)`.
     place: [V; 3],
-    /// `Σ w_ij R²`.
-    square: V,
     farthest: V,
 }
 
 impl<S: PairScale> TotalGradient<'_, S> {
     #[inline(always)]
     fn sums<V: Lanes>(&self) -> Sums<V> {
-        let zero = V::splat(0.0);
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let (initial, velocity) = self.around.motion::<V>();
         let position = self.positions_of::<V>();
         let mut sums = Sums {
             rate: [zero; 9],
             deformation: [zero; 9],
-            moment: [zero; 6],
             velocity: [zero; 3],
             place: [zero; 3],
-            square: zero,
             farthest: zero,
         };
         for pair in self.around.pairs(&initial) {
             let (source, there) = (pair.source, &self.positions[pair.index]);
             let volume = V::splat(source.volume);
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = add_moment(&mut sums.moment, &pair.separation.r, factor);
+            let mut steep = pair.separation.r;
+            for part in &mut steep {
+                *part = part.mul(factor);
+            }
             let weight = factor.mul(pair.separation.square);
-            sums.square = pair.separation.square.mul_add(weight, sums.square);
             let mut apart = zero;
             for a in 0..3 {
                 let v = V::splat(source.velocity[a]).sub(velocity[a]);
@@ -133,7 +173,12 @@ impl<S: PairScale> TotalGradient<'_, S> {
                     sums.deformation[c] = x.mul_add(steep[b], sums.deformation[c]);
                 }
             }
-            let ratio = apart.div(pair.h.mul(pair.h));
+            let per_length = if S::VARIABLE {
+                pair.kernel.inverse_h
+            } else {
+                one.div(pair.h)
+            };
+            let ratio = apart.mul(per_length.mul(per_length));
             sums.farthest = sums
                 .farthest
                 .min_where_positive(zero.sub(ratio), pair.kernel.inside);
@@ -221,13 +266,14 @@ impl<S: PairScale> Vectorised for TotalGradient<'_, S> {
         let Sums {
             rate,
             deformation: mut plain,
-            mut moment,
             velocity,
             place,
-            square,
             farthest,
         } = self.sums::<V>();
         let zero = V::splat(0.0);
+        let initial = records(self.initial, &self.around.receivers);
+        let mut moment: Symmetric<V> = gather_all(&initial, |sums, c| sums.moment[c]);
+        let square: V = gather(&initial, |sums| sums.square);
         let weight = zero.sub(moment[0].add(moment[1]).add(moment[2]));
         let weight = weight.min(V::splat(-f64::MIN_POSITIVE));
         for axis in self.dimension..3 {

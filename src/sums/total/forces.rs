@@ -2,7 +2,7 @@
 
 use crate::momentum::{Forces, Momentum, PairStress, Viscous, soft};
 use crate::neighbourhood::{
-    Neighbourhood, SMALLEST_SQUARE, Separation, gather, gather_all, records,
+    Divisor, Neighbourhood, SMALLEST_SQUARE, Separation, gather, gather_all, records,
 };
 use crate::terms::TermSums;
 use numerics::kernel::PairScale;
@@ -42,6 +42,59 @@ impl TotalRecord {
         let beyond: f64 = (0..3).map(|a| r[a] * (r[a] - expected(a))).sum();
         let strain = beyond / square;
         (self.hourglass + other.hourglass) * (strain - strain.clamp(-LEAST_STRAIN, LEAST_STRAIN))
+    }
+}
+
+/// Distances now times `(r² + 0.01 h²) (ρ_i + ρ_j)`, whose inverse serves both.
+#[derive(Clone, Copy)]
+struct Apart<'a, V> {
+    /// Positions of the receivers (m).
+    position: [V; 3],
+    /// Their densities (kg/m³).
+    rho: V,
+    /// Stresses of all particles and images.
+    stresses: &'a [TotalRecord],
+}
+
+/// How far eight receivers are from one neighbour now.
+#[derive(Clone, Copy)]
+struct ApartNow<V> {
+    /// `r²` (m²), not below [`SMALLEST_SQUARE`].
+    square: V,
+    /// `r` (m).
+    distance: V,
+    /// `(r² + 0.01 h²) (ρ_i + ρ_j)` (kg/m).
+    soft: V,
+}
+
+impl<V: Lanes> Divisor<V> for Apart<'_, V> {
+    type Parts = ApartNow<V>;
+
+    #[inline(always)]
+    fn before(&self) -> ApartNow<V> {
+        ApartNow {
+            square: self.rho,
+            distance: self.rho,
+            soft: self.rho,
+        }
+    }
+
+    #[inline(always)]
+    fn of(&self, index: usize, _: V, h: V) -> (Option<V>, ApartNow<V>) {
+        let state = &self.stresses[index];
+        let mut r = self.position;
+        for a in 0..3 {
+            r[a] = r[a].sub(V::splat(state.position[a]));
+        }
+        let square = dot(&r, &r).max(V::splat(SMALLEST_SQUARE));
+        let distance = square.sqrt();
+        let soft = soft(square, h).mul(self.rho.add(V::splat(state.density)));
+        let parts = ApartNow {
+            square,
+            distance,
+            soft,
+        };
+        (Some(distance.mul(soft)), parts)
     }
 }
 
@@ -106,7 +159,7 @@ impl PairStress for TotalRecord {
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
-        let (zero, one, least) = (V::splat(0.0), V::splat(1.0), V::splat(LEAST_STRAIN));
+        let (zero, least) = (V::splat(0.0), V::splat(LEAST_STRAIN));
         let (initial, velocity) = around.motion::<V>();
         let own = records(sums.stresses, &around.receivers);
         let position: [V; 3] = gather_all(&own, |record, a| record.position[a]);
@@ -122,7 +175,12 @@ impl PairStress for TotalRecord {
         let terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
         let (mut force, mut slope) = ([zero; 3], [zero; 3]);
         let (mut power, mut fastest) = (zero, zero);
-        for pair in around.pairs(&initial) {
+        let divisor = Apart {
+            position,
+            rho: viscous.rho,
+            stresses: sums.stresses,
+        };
+        for pair in around.pairs_beside(&initial, divisor) {
             let (source, kernel) = (pair.source, &pair.kernel);
             let state = &sums.stresses[pair.index];
             let shown = sums.terms.record::<TERMS>(pair.index);
@@ -131,12 +189,13 @@ impl PairStress for TotalRecord {
                 r[a] = r[a].sub(V::splat(state.position[a]));
                 v[a] = v[a].sub(V::splat(source.velocity[a]));
             }
-            let square = dot(&r, &r).max(V::splat(SMALLEST_SQUARE));
-            let distance = square.sqrt();
+            let ApartNow {
+                square,
+                distance,
+                soft,
+            } = pair.parts;
             let density = V::splat(state.density);
-            let divisor = soft(square, pair.h).mul(viscous.rho.add(density));
-            let both = one.div(distance.mul(divisor));
-            let (inverse, beside) = (both.mul(divisor), both.mul(distance));
+            let (inverse, beside) = (pair.beside.mul(soft), pair.beside.mul(distance));
             let separation = Separation {
                 r,
                 square,

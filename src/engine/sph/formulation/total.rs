@@ -9,17 +9,17 @@ use super::momentum_sweep::accelerate_with;
 use crate::diagnose::Tear;
 use crate::domain::InitialLayout;
 use crate::sph::material_update::{Show, Updated};
-use crate::sph::shared::{Sums, scratch_of, show_images};
+use crate::sph::shared::{Sums, scratch_of, show_images, sources};
 use comm::Comm;
 use material::FAILED;
 use model::Case;
-use numerics::dispatch::Vectorised;
+use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::{Kernel, PairScale};
 use numerics::lane_matrix::{full, read_all, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
 use numerics::vector::{dot, minus, norm};
 use numerics::virial::Virial;
-use particles::neighbours::{Among, Cluster, Groups, Lists};
+use particles::neighbours::{Among, CHUNKS_AT_ONCE, Cluster, Groups, Lists};
 use particles::{
     Active, HaloImages, Image, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
 };
@@ -27,7 +27,8 @@ use sums::corrected::CorrectedRecord;
 use sums::from_mirrors::FromMirrors;
 use sums::neighbourhood::Neighbourhood;
 use sums::step::{Side, Step};
-use sums::total::{LEAST_DETERMINANT, Total, TotalGradient, TotalRecord};
+use sums::total::{InitialPairs, InitialSums, LEAST_DETERMINANT, Total, TotalGradient, TotalRecord};
+use sums::with_scale;
 
 /// Distance over the smoothing length below which particles of a body meet.
 const CLOSE: f64 = 0.6;
@@ -49,6 +50,10 @@ const ROOM: f64 = 1.1;
 pub struct TotalBodies {
     lists: Lists,
     records: Vec<TotalRecord>,
+    /// Sums over initial neighbours, by places of the lists.
+    initial: Vec<InitialSums>,
+    /// True if these are of the lists before.
+    is_initial_due: bool,
     /// Positions of the images of the lists (m).
     positions: Vec<[f64; 3]>,
     from_mirrors: Vec<FromMirrors>,
@@ -111,6 +116,8 @@ impl TotalBodies {
             images: Vec::new(),
             listed: Listed::default(),
             records: Vec::new(),
+            initial: Vec::new(),
+            is_initial_due: true,
             positions: Vec::new(),
             from_mirrors: Vec::new(),
             mirrors: Mirrors::new(&case.symmetry),
@@ -177,6 +184,7 @@ impl TotalBodies {
             self.lists.leave_out(&self.others);
             self.lists
                 .build(active, own, None, |_| false, false, scratch);
+            self.is_initial_due = true;
         }
         resize(&mut self.positions, self.lists.images().len());
         self.lists
@@ -242,10 +250,14 @@ impl TotalBodies {
             return;
         }
         resize(&mut self.records, self.lists.images().len());
+        if std::mem::take(&mut self.is_initial_due) {
+            self.sum_initial_pairs(sums);
+        }
         self.farthest.store(0, Relaxed);
         let gradient = TotalGradients {
             dimension: sums.dimension,
             lists: &self.lists,
+            initial: &self.initial,
             positions: &self.positions,
             alpha: sums.viscosity.alpha,
             stiffness: hourglass,
@@ -261,6 +273,25 @@ impl TotalBodies {
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, &self.lists, step);
+    }
+
+    /// Sums over the initial neighbours of each particle of the lists.
+    fn sum_initial_pairs(&mut self, sums: &Sums) {
+        let (lists, set) = (&self.lists, instructions());
+        resize(&mut self.initial, lists.images().len());
+        let initial = Scatter::new(&mut self.initial);
+        let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
+        with_scale!(sums.scale, scale => chunks.for_each(|chunk| {
+            let motion = sources(lists, scale);
+            for (cluster, neighbours, _) in chunk.iter() {
+                let around = motion.around(cluster.receivers, neighbours);
+                let own = set.run(InitialPairs { around });
+                for (&place, own) in cluster.valid().iter().zip(own) {
+                    // SAFETY: the place belongs to this cluster alone, and this thread has the cluster.
+                    unsafe { *initial.slot(place as usize) = own };
+                }
+            }
+        }));
     }
 
     /// The second sweep, after images have got their records.
@@ -442,6 +473,7 @@ impl TotalBodies {
         lists
             + mirrors
             + self.records.capacity() * size_of::<TotalRecord>()
+            + self.initial.capacity() * size_of::<InitialSums>()
             + self.positions.capacity() * size_of::<[f64; 3]>()
     }
 }
@@ -450,6 +482,7 @@ impl TotalBodies {
 struct TotalGradients<'a> {
     dimension: usize,
     lists: &'a Lists,
+    initial: &'a [InitialSums],
     positions: &'a [[f64; 3]],
     /// Linear coefficient of the artificial viscosity.
     alpha: f64,
@@ -482,6 +515,7 @@ impl Gradient for TotalGradients<'_> {
     ) -> ([F64x8; 9], ShowTotal<'b>) {
         let sums = TotalGradient {
             around,
+            initial: self.initial,
             positions: self.positions,
             dimension: self.dimension,
         };
