@@ -4,6 +4,7 @@ pub mod alone;
 pub mod collector;
 pub mod counter;
 pub mod dispatch;
+pub mod elementary;
 pub mod ellipsoid;
 pub mod exact_sum;
 pub mod extent;

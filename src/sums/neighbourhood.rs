@@ -91,7 +91,10 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
             h: self.h(),
             divisor,
             done: 0,
-            next: (Divided::of::<S>(Distance::of(one), one, None), divisor.before()),
+            next: (
+                Divided::of::<S>(Distance::of(one), one, None),
+                divisor.before(),
+            ),
             after: Distance::of(one),
         };
         if !self.neighbours.is_empty() {

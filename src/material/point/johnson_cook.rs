@@ -12,8 +12,12 @@
 //! Rates below the reference rate count as that rate, T* stays between 0 and 1 (molten: Y = 0). ε
 //! and ε̇ are those of the end of the step: the return solves for both at once.
 
-use super::{Conditions, LANES, Law, PointBatch, jaumann, radial_return};
+use super::radial_return::{FlowStress, Return, positive};
+use super::{Conditions, LANES, Law, PointBatch, jaumann};
 use crate::ThermalConstants;
+use numerics::dispatch::{Vectorised, instructions};
+use numerics::elementary::{ln, pow};
+use numerics::lanes::{F64x8, Lanes};
 
 law! {
     /// Elastic–plastic with strain hardening, strain rate hardening and thermal softening.
@@ -60,7 +64,6 @@ impl JohnsonCook {
     }
 
     /// Y (Pa), and its derivatives by the strain (Pa) and by the logarithm of the rate (Pa).
-    #[inline(always)]
     fn hardened(&self, strain: f64, rate: f64, softening: f64) -> [f64; 3] {
         let power = if strain > 0.0 {
             self.b * libm::pow(strain, self.n)
@@ -78,6 +81,68 @@ impl JohnsonCook {
     }
 }
 
+/// Flow stresses of eight points at the end of a step `dt` (s): [`JohnsonCook::hardened`] for vectors.
+struct Flow<'a> {
+    law: &'a JohnsonCook,
+    strain: &'a super::Lanes,
+    softening: &'a super::Lanes,
+    dt: f64,
+}
+
+impl FlowStress for Flow<'_> {
+    #[inline(always)]
+    fn at<V: Lanes>(&self, increment: V) -> [V; 2] {
+        let (law, one) = (self.law, V::splat(1.0));
+        let strain = V::read(self.strain).add(increment);
+        let least = V::splat(f64::MIN_POSITIVE);
+        let power = pow(strain.max(least), V::splat(law.n)).mul(positive(strain));
+        let power = power.mul(V::splat(law.b));
+        let softening = V::read(self.softening);
+        let hard = power.add(V::splat(law.a)).mul(softening);
+        let slope = power
+            .mul(V::splat(law.n))
+            .div(strain.max(least))
+            .mul(softening);
+        let ratio = increment.div(V::splat(self.dt * law.reference_rate));
+        let c = V::splat(law.c);
+        let fast = ln(ratio.max(one)).mul_add(c, one);
+        let by_log = hard.mul(c).mul(positive(ratio.sub(one)));
+        [hard.mul(fast), slope.mul_add(fast, by_log.div(increment))]
+    }
+
+    /// That without hardening, if hardening only adds to it.
+    #[inline(always)]
+    fn least(&self) -> super::Lanes {
+        let mut least = [0.0; LANES];
+        if self.law.b >= 0.0 && self.law.c >= 0.0 {
+            for k in 0..LANES {
+                least[k] = self.law.a * self.softening[k];
+            }
+        }
+        least
+    }
+}
+
+/// `1 − T*^m` of eight points.
+struct Softening<'a> {
+    homologous: &'a F64x8,
+    m: f64,
+}
+
+impl Vectorised for Softening<'_> {
+    type Output = F64x8;
+
+    #[inline(always)]
+    fn run<V: Lanes>(self) -> F64x8 {
+        let homologous = V::load(self.homologous);
+        let power = pow(
+            homologous.max(V::splat(f64::MIN_POSITIVE)),
+            V::splat(self.m),
+        );
+        V::splat(1.0).sub(power.mul(positive(homologous))).store()
+    }
+}
+
 impl Law for JohnsonCook {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
     const NEEDS_TEMPERATURE: bool = true;
@@ -92,12 +157,16 @@ impl Law for JohnsonCook {
         self.a
     }
 
-    /// Thermal softening, lane by lane.
+    /// Thermal softening.
     #[inline(never)]
     fn soften(&self, _point: &PointBatch, now: &mut Conditions) {
+        let mut homologous = F64x8([0.0; LANES]);
         for k in 0..LANES {
-            now.softening[k] = self.softening(now.temperature[k], &now.thermal);
+            homologous.0[k] = now.thermal.homologous(now.temperature[k]);
         }
+        let homologous = &homologous;
+        let m = self.m;
+        now.softening = instructions().run(Softening { homologous, m }).0;
     }
 
     fn hardening(&self, point: &PointBatch, k: usize, now: &Conditions) -> [f64; 2] {
@@ -119,19 +188,24 @@ impl Law for JohnsonCook {
         jaumann::deform(point, now);
     }
 
-    /// Radial return, lane by lane: not for vectors, so it stays out of their loops.
+    /// Radial return.
     #[inline(never)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
         if now.dt == 0.0 {
             return;
         }
-        for k in 0..LANES {
-            let before = point.plastic_strain[k];
-            radial_return::return_lane(point, k, now.shear_modulus[k], |increment| {
-                let [y, by_strain, by_log] =
-                    self.hardened(before + increment, increment / now.dt, now.softening[k]);
-                [y, by_strain + by_log / increment]
-            });
-        }
+        let strain = point.plastic_strain;
+        let flow = Flow {
+            law: self,
+            strain: &strain,
+            softening: &now.softening,
+            dt: now.dt,
+        };
+        let shear_modulus = &now.shear_modulus;
+        instructions().run(Return {
+            point,
+            shear_modulus,
+            flow,
+        });
     }
 }

@@ -16,8 +16,12 @@
 //!
 //! `T_m0` is a constant of the fit, above the melting point at zero pressure.
 
-use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, radial_return};
+use super::radial_return::{FlowStress, Return, positive};
+use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
+use numerics::dispatch::instructions;
+use numerics::elementary::pow;
+use numerics::lanes::Lanes;
 
 law! {
     /// Elastic–plastic with a shear modulus and a yield stress that follow pressure and
@@ -72,7 +76,6 @@ impl SteinbergGuinan {
     }
 
     /// Yield stress before pressure and temperature (Pa) and its slope (Pa).
-    #[inline(always)]
     fn hardened(&self, strain: f64) -> [f64; 2] {
         let base = 1.0 + self.beta * (strain + self.initial_strain);
         let y = self.yield_stress * libm::pow(base, self.n);
@@ -81,6 +84,42 @@ impl SteinbergGuinan {
         } else {
             [at_most(y, self.max_yield_stress), 0.0]
         }
+    }
+}
+
+/// Flow stresses of eight points: [`SteinbergGuinan::hardened`] for vectors.
+struct Flow<'a> {
+    law: &'a SteinbergGuinan,
+    strain: &'a super::Lanes,
+    softening: &'a super::Lanes,
+}
+
+impl FlowStress for Flow<'_> {
+    #[inline(always)]
+    fn at<V: Lanes>(&self, increment: V) -> [V; 2] {
+        let (law, softening) = (self.law, V::read(self.softening));
+        let strain = V::read(self.strain).add(increment);
+        let (beta, n) = (V::splat(law.beta), V::splat(law.n));
+        let whole = strain.add(V::splat(law.initial_strain));
+        let base = whole.mul_add(beta, V::splat(1.0));
+        let hardened = pow(base, n).mul(V::splat(law.yield_stress));
+        let most = V::splat(law.max_yield_stress);
+        let slope = n.mul(beta).mul(hardened).div(base);
+        let slope = slope.mul(positive(most.sub(hardened)));
+        [hardened.min(most).mul(softening), slope.mul(softening)]
+    }
+
+    /// That without hardening, if hardening only adds to it.
+    #[inline(always)]
+    fn least(&self) -> super::Lanes {
+        let mut least = [0.0; LANES];
+        if self.law.beta >= 0.0 && self.law.n >= 0.0 {
+            for k in 0..LANES {
+                // Less what rounding of the power may take.
+                least[k] = (1.0 - 1e-12) * self.law.yield_stress * self.softening[k];
+            }
+        }
+        least
     }
 }
 
@@ -131,7 +170,7 @@ impl Law for SteinbergGuinan {
         jaumann::deform(point, now);
     }
 
-    /// Radial return, lane by lane: not for vectors, so it stays out of their loops.
+    /// Radial return.
     #[inline(never)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
         if now.dt == 0.0 {
@@ -143,13 +182,19 @@ impl Law for SteinbergGuinan {
                 for component in &mut point.deviatoric_stress {
                     component[k] = 0.0;
                 }
-                continue;
             }
-            let before = point.plastic_strain[k];
-            radial_return::return_lane(point, k, now.shear_modulus[k], |increment| {
-                self.hardened(before + increment)
-                    .map(|y| y * now.softening[k])
-            });
         }
+        let strain = point.plastic_strain;
+        let flow = Flow {
+            law: self,
+            strain: &strain,
+            softening: &now.softening,
+        };
+        let shear_modulus = &now.shear_modulus;
+        instructions().run(Return {
+            point,
+            shear_modulus,
+            flow,
+        });
     }
 }

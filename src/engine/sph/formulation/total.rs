@@ -27,7 +27,9 @@ use sums::corrected::CorrectedRecord;
 use sums::from_mirrors::FromMirrors;
 use sums::neighbourhood::Neighbourhood;
 use sums::step::{Side, Step};
-use sums::total::{InitialPairs, InitialSums, LEAST_DETERMINANT, Total, TotalGradient, TotalRecord};
+use sums::total::{
+    InitialPairs, InitialSums, LEAST_DETERMINANT, Total, TotalGradient, TotalRecord,
+};
 use sums::with_scale;
 
 /// Distance over the smoothing length below which particles of a body meet.
