@@ -198,6 +198,43 @@ fn energy_of_a_body_is_constant_to_rounding() {
     }
 }
 
+/// Hot spray that flies alone does not keep others waiting; where it has a neighbour, it does.
+#[test]
+fn spray_that_flies_alone_sets_no_step() {
+    let speck = |name: &str, x: f64| {
+        let shape = Shape::Box {
+            lower: Vec3::new(x, 0.0, 0.0),
+            upper: Vec3::new(x + SPACING, SPACING, SPACING),
+        };
+        body(name, shape, SPACING, Vec3::zeros())
+    };
+    let step_with = |count: usize, heat: f64| {
+        let mut bodies = vec![ball("ball", 0.0, 4.0, 0.0)];
+        let at = [30.0, 31.5];
+        bodies.extend((0..count).map(|k| speck(&format!("speck {k}"), at[k] * SPACING)));
+        let mut case = case(3, bodies, 1e-6);
+        case.default_contact = ContactMode::Kernel;
+        case.materials[0].failure.spall = Some(Spall {
+            pressure: -1e9,
+            after: AfterSpall::Failed,
+            fracture_energy: 0.0,
+        });
+        let mut simulation = start(case);
+        let particles = &mut simulation.particles;
+        for i in 0..particles.owned() {
+            if particles.body[i] > 0 {
+                particles.damage[i] = 1.0;
+                particles.specific_energy[i] = heat;
+            }
+        }
+        advance(&mut simulation, 3);
+        simulation.state.dt
+    };
+    let cold = step_with(1, 0.0);
+    assert_eq!(step_with(1, 4e7), cold);
+    assert!(step_with(2, 4e7) < 0.5 * cold);
+}
+
 /// Two balls meet at `speed` (m/s) each, in steps of at most `dt` (s), for .1 µs: what contact
 /// has lost or made, relative to the initial kinetic energy.
 fn contact_defect(contact: &ContactMode, speed: f64, dt: f64) -> f64 {

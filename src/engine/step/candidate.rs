@@ -11,6 +11,7 @@ use crate::diagnose::{Limits, Moved, NumericalFailure, PAST_STEPS, PastStep, Rea
 use crate::domain::Span;
 use crate::sph::{SignalSpeed, Signals, Sph};
 use comm::Comm;
+use material::FAILED;
 use model::{Case, TimeStepOptions};
 use numerics::vector::square;
 
@@ -188,6 +189,8 @@ pub(super) struct CriteriaFields<'a> {
     pub contact_stiffness: &'a [f64],
     pub sound_speed: &'a [f64],
     pub approach_speed: &'a [f64],
+    /// Empty in cases without failure.
+    pub damage: &'a [f64],
     pub correction_norm: &'a [f64],
     pub fit_norm: &'a [f64],
 }
@@ -206,6 +209,7 @@ macro_rules! criteria_fields {
             contact_stiffness: &$particles.contact_stiffness,
             sound_speed: &$particles.sound_speed,
             approach_speed: &$particles.approach_speed,
+            damage: &$particles.damage,
             correction_norm: &$particles.correction_norm,
             fit_norm: &$particles.fit_norm,
         }
@@ -273,7 +277,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
             if candidate < best.best {
                 let by_sound = candidate[1] == Reason::Sound as u64 && candidate[0] != ERROR;
                 let by_sound =
-                    by_sound.then(|| [self.fields.smoothing_length[i], self.signals.of::<F>(i)]);
+                    by_sound.then(|| [self.fields.smoothing_length[i], self.signal(i)]);
                 *best = BestCandidate::new(candidate, self.limits.step_min, by_sound);
             }
         }
@@ -284,7 +288,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     #[inline(always)]
     fn is_beyond(&self, i: usize, moved: &Moved, best: &BestCandidate) -> bool {
         let (fields, factors) = (&self.fields, &self.options);
-        let (h, signal) = (fields.smoothing_length[i], self.signals.of::<F>(i));
+        let (h, signal) = (fields.smoothing_length[i], self.signal(i));
         let by_sound = (signal >= 0.0 && factors.courant * h > best.step * signal)
             || (best.is_matched(h, signal) && fields.id[i] > best.best[2]);
         let reach = factors.force * factors.force * h;
@@ -298,6 +302,19 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         let inside = self.limits.surely_holds(fields.density[i], moved);
         let near = fields.position[i].iter().all(|x| x.abs() < FARTHEST);
         by_sound & by_force & by_contact & inside & near
+    }
+
+    /// Speed of the signals (m/s) that particle `i` sends: none where it has failed and flies alone, since sums without
+    /// neighbours are zero to the bit. Hot spray would keep all other particles waiting for sound that nothing carries.
+    #[inline(always)]
+    fn signal(&self, i: usize) -> f64 {
+        let fields = &self.fields;
+        let has_failed = fields.damage.get(i).is_some_and(|&damage| damage >= FAILED);
+        if has_failed && fields.acceleration[i] == [0.0; 3] && fields.approach_speed[i] == 0.0 {
+            0.0
+        } else {
+            self.signals.of::<F>(i)
+        }
     }
 
     #[inline(always)]
@@ -314,7 +331,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     fn candidate(&self, i: usize, moved: &Moved) -> Candidate {
         let (fields, factors) = (&self.fields, &self.options);
         let h = fields.smoothing_length[i];
-        let sound = factors.courant * h / self.signals.of::<F>(i);
+        let sound = factors.courant * h / self.signal(i);
         let square = square(&self.acceleration(i, &moved.contact));
         let force = factors.force * (h / square.sqrt()).sqrt();
         let contact = if self.contact {
