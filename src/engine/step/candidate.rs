@@ -304,17 +304,14 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         by_sound & by_force & by_contact & inside & near
     }
 
-    /// Speed of the signals (m/s) that particle `i` sends: none where it has failed and flies alone, since sums without
-    /// neighbours are zero to the bit. Hot spray would keep all other particles waiting for sound that nothing carries.
+    /// Speed of the signals (m/s) that particle `i` sends. Those of failed matter without neighbours are no sound, since
+    /// nothing carries it: its acceleration is zero to the bit. Hot spray would keep all others waiting.
     #[inline(always)]
     fn signal(&self, i: usize) -> f64 {
         let fields = &self.fields;
         let has_failed = fields.damage.get(i).is_some_and(|&damage| damage >= FAILED);
-        if has_failed && fields.acceleration[i] == [0.0; 3] && fields.approach_speed[i] == 0.0 {
-            0.0
-        } else {
-            self.signals.of::<F>(i)
-        }
+        let flies_alone = has_failed && fields.acceleration[i] == [0.0; 3];
+        self.signals.of::<F>(i, !flies_alone)
     }
 
     #[inline(always)]
