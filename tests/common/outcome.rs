@@ -85,7 +85,6 @@ pub fn everything() -> Case {
     case.materials[0].failure.spall = Some(Spall {
         pressure: -1e8,
         after: AfterSpall::Recompacts,
-        fracture_energy: 0.0,
     });
     case
 }

@@ -177,7 +177,6 @@ fn energy_of_a_body_is_constant_to_rounding() {
                 case.materials[0].failure.spall = Some(Spall {
                     pressure: -1e8,
                     after: AfterSpall::Failed,
-                    fracture_energy: 0.0,
                 });
                 let mut simulation = start(case);
                 advance(&mut simulation, 150);

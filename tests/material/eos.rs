@@ -207,12 +207,7 @@ fn linear_forms_are_what_they_say() {
 /// A cut-off without memory.
 fn spall(pressure: f64) -> Spall {
     let after = AfterSpall::Hold;
-    let fracture_energy = 0.0;
-    Spall {
-        pressure,
-        after,
-        fracture_energy,
-    }
+    Spall { pressure, after }
 }
 
 #[test]

@@ -273,7 +273,6 @@ fn spalled_metal_keeps_the_temperature_of_its_matter() {
     metal.failure.spall = Some(Spall {
         pressure: -1.2e9,
         after: AfterSpall::Hold,
-        fracture_energy: 0.0,
     });
     // Warm metal that opens at constant energy: the voids hold none of it.
     let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, 0.0).unwrap();
@@ -285,7 +284,6 @@ fn spalled_metal_keeps_the_temperature_of_its_matter() {
     metal.failure.spall = Some(Spall {
         pressure: -1.2e9,
         after: AfterSpall::Failed,
-        fracture_energy: 0.0,
     });
     let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, 1.0).unwrap();
     for ratio in [0.9, 0.6, 0.2, 1e-3] {

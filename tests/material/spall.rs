@@ -24,7 +24,6 @@ fn metal(after: AfterSpall) -> Material {
     metal.failure.spall = Some(Spall {
         pressure: LIMIT,
         after,
-        fracture_energy: 0.0,
     });
     metal
 }
@@ -136,7 +135,6 @@ fn pressure_without_density_recovers_nothing() {
     metal.failure.spall = Some(Spall {
         pressure: LIMIT,
         after: AfterSpall::Recompacts,
-        fracture_energy: 0.0,
     });
     let mut points = batch(0.9 * metal.reference_density, 0.0);
     metal.update(&mut points, 1e-9);
@@ -199,7 +197,6 @@ fn failed_matter_of_any_strength_has_no_shear_and_counts_no_plastic_strain() {
         material.failure.spall = Some(Spall {
             pressure: -1e-3 * modulus,
             after: AfterSpall::Failed,
-            fracture_energy: 0.0,
         });
         let mut points = batch(material.reference_density, 0.0);
         let l = Matrix3::new(1.0, 0.5, 0.0, -0.2, 0.3, 0.1, 0.0, 0.4, 0.2);
@@ -260,7 +257,6 @@ fn lanes_do_not_meet() {
             metal.failure.spall = Some(Spall {
                 pressure: LIMIT,
                 after,
-                fracture_energy: 0.0,
             });
             let rho = metal.reference_density;
             let mut mixed = batch(rho, 1e3);

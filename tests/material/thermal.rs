@@ -107,7 +107,6 @@ fn temperatures_after_an_update_are_those_of_the_state() {
         metal.failure.spall = Some(Spall {
             pressure: -1.2e9,
             after,
-            fracture_energy: 0.0,
         });
         let constants = ThermalConstants {
             taylor_quinney: share,

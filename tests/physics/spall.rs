@@ -175,7 +175,6 @@ fn a_bar_torn_as_it_turns_keeps_angular_momentum_and_energy() {
         case.materials[0].failure.spall = Some(Spall {
             pressure: -8e8,
             after,
-            fracture_energy: 0.0,
         });
         let mut simulation = Simulation::start(case, comm).unwrap();
         let particles = &mut simulation.particles;

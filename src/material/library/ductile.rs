@@ -43,9 +43,6 @@ const FLOOR: &str = "assumed: fits may fall below zero where tension is high";
 const OPEN: &str = "none: beyond the tests of the fit a spall limit rules";
 const SPALL: &str = "assumed: the middle of what plate impacts are reported to give at some 1e5/s \
      (2024 1.1-1.7, 6061 1.0-1.6, copper 1.2-2.0, 4340 2.6-5.0 GPa); it grows with the rate";
-const FLAT_2024: &str = "K²/E of a plane-strain fracture toughness of 32 MPa m^1/2";
-const SLANT_2024: &str =
-    "K²/E of a plane-stress fracture toughness of thin sheets of some 85 MPa m^1/2, rounded";
 const SHEAR_4340: &str = "assumed: E = 200 GPa, ν = .29, round values of low-alloy steel";
 const SHEAR_5083: &str = "E = 70 GPa, ν = .3, as those who fitted the strength take them";
 const SHEAR_460E: &str = "E = 200 GPa, ν = .33, as those who fitted the strength take them";
@@ -74,12 +71,9 @@ records! {
             jc(&AL_2024, [369e6, 684e6, 0.73, 0.0083, 1.7], heat(875.0, 300.0, Some(775.0))),
             [0.13, 0.13, -1.5, 0.011, 0.0],
         )
-        .spalling(1.4e9)
-        .tough(100e3, 14e3),
+        .spalling(1.4e9),
         sources!(
             HOLMQUIST, UINTAH, UINTAH, DECKS_2024,
-            "failure.spall.fracture_energy": FLAT_2024,
-            "failure.fracture_energy": SLANT_2024,
             "density": UINTAH,
             "strength.johnson_cook.reference_rate": RATE,
             "thermal.reference_temperature": ROOM,
@@ -206,18 +200,7 @@ impl Parts {
         self.failure.spall = Some(Spall {
             pressure: -strength,
             after: AfterSpall::Failed,
-            fracture_energy: 0.0,
         });
-        self
-    }
-
-    /// The same with these energies of cracks (J/m²): of shear and thin matter, and of expansion.
-    fn tough(mut self, slant: f64, flat: f64) -> Self {
-        self.failure.options.fracture_energy = slant;
-        self.failure.options.effect = Effect::Scaled;
-        if let Some(spall) = &mut self.failure.spall {
-            spall.fracture_energy = flat;
-        }
         self
     }
 }

@@ -134,23 +134,17 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
         let shear = s(3) * (l(1) + l(3)) + s(4) * (l(2) + l(6)) + s(5) * (l(5) + l(7));
         let tension = at_least(-point.pressure[k], 0.0);
         let power = normal + shear + tension * (l(0) + l(4) + l(8));
-        spend(point, k, power, now.options.fracture_energy, now);
+        spend(point, k, power, now);
     }
 }
 
-/// Damages one lane by the power of its stress (W/m³) that opens cracks of this energy (J/m²), the faster the less
-/// of it was left at the onset.
+/// Damages one lane by the power of its stress (W/m³) that opens cracks, the faster the less of the
+/// fracture energy was left at the onset.
 #[inline(always)]
-pub(super) fn spend(
-    point: &mut PointBatch,
-    k: usize,
-    power: f64,
-    fracture_energy: f64,
-    now: &Conditions,
-) {
+pub(super) fn spend(point: &mut PointBatch, k: usize, power: f64, now: &Conditions) {
     let faster = at_least(point.failure_onset[k], 1.0);
     let spent = faster * now.size(point, k) * at_least(power / now.kept[k], 0.0) * now.dt;
-    point.damage[k] += spent / (2.0 * fracture_energy);
+    point.damage[k] += spent / (2.0 * now.options.fracture_energy);
 }
 
 /// Matter lets go of what damage has taken since `before`, or of all that failed matter does not

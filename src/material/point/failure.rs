@@ -189,7 +189,7 @@ macro_rules! failure_laws {
 
             /// That of a liquid: it cavitates where its pressure would fall below zero, and closes again.
             pub const CAVITATES: Self = Self {
-                spall: Some(Spall { pressure: 0.0, after: AfterSpall::Hold, fracture_energy: 0.0 }),
+                spall: Some(Spall { pressure: 0.0, after: AfterSpall::Hold }),
                 ..Self::NONE
             };
 

@@ -380,7 +380,6 @@ mod tests {
             spall: Some(Spall {
                 pressure: -1e6,
                 after,
-                fracture_energy: 0.0,
             }),
             ..default
         };

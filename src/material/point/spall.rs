@@ -51,8 +51,6 @@ law! {
         pressure: "Pa",
         /// Fate of material beyond it.
         after: AfterSpall,
-        /// Energy that opens a crack by expansion (J/m²); zero if that of all failure does.
-        fracture_energy: "J/m^2",
     }
 }
 
@@ -105,17 +103,12 @@ impl Law for Spall {
         if !self.follows_state() {
             return;
         }
-        let energy = if self.fracture_energy > 0.0 {
-            self.fracture_energy
-        } else {
-            now.options.fracture_energy
-        };
         for k in 0..LANES {
             let p = point.pressure[k];
             let held = p <= self.pressure * now.kept[k];
             if held && point.failure_onset[k] < 1.0 && point.damage[k] < FAILED {
                 let [xx, yy, zz] = [0, 4, 8].map(|c| point.velocity_gradient[c][k]);
-                damage::spend(point, k, -p * (xx + yy + zz), energy, now);
+                damage::spend(point, k, -p * (xx + yy + zz), now);
             }
         }
     }

@@ -201,8 +201,6 @@ macro_rules! failure_laws {
                 pressure: Placed<Pressure>, NotPositive;
                 /// What becomes of matter beyond it.
                 after: Spanned<AfterSpall> = AfterSpall::Failed;
-                /// Energy that opens a crack by expansion.
-                fracture_energy: Placed<FractureEnergy> = "0", NotNegative => "that of all failure";
             }
             /// `failure.principal_stress`: largest principal stress.
             principal_stress: PrincipalStressParams => PrincipalStress {

@@ -153,14 +153,6 @@ fn check(
             "what softens where it localises takes a `fracture_energy`",
         ));
     }
-    if let Some(OrNone::Table(spall)) = params.spall.as_ref().map(Spanned::get_ref)
-        && let Some(energy) = &spall.fracture_energy
-        && failure.spall.is_some_and(|law| law.fracture_energy > 0.0)
-        && !options.softens()
-    {
-        let title = "cracks that expansion opens have an energy of their own only beside a `fracture_energy` of all others";
-        return Err(Diagnostic::new(energy.span(), title));
-    }
     if options.softens() {
         if failure.grady_kipp.is_some() {
             let title =
