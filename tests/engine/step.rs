@@ -216,7 +216,6 @@ fn spray_that_flies_alone_sets_no_step() {
         case.materials[0].failure.spall = Some(Spall {
             pressure: -1e9,
             after: AfterSpall::Failed,
-            fracture_energy: 0.0,
         });
         let mut simulation = start(case);
         let particles = &mut simulation.particles;
