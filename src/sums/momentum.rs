@@ -159,15 +159,16 @@ impl<V: Lanes> Viscous<V> {
         let r = &separation.r;
         let soft = soft(separation.square, h);
         let rho_sum = self.rho.add(V::splat(density));
-        // μ = h v·r/(r² + 0.01 h²) for approaching pairs that have a viscosity at all.
+        // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
         let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
-        let approach = h
+        let mu = h
             .mul(closing)
-            .mul_add(inverse.mul(rho_sum), self.negligible);
-        let speeds = self.speed.add(V::splat(speed));
-        let mu = V::splat(0.0).min_where_positive(approach, speeds);
+            .mul_add(inverse.mul(rho_sum), self.negligible)
+            .min(V::splat(0.0));
         // Π = μ (β μ − α c̄)/ρ̄ with c̄ = ½ c_sum and ρ̄ = ½ rho_sum.
+        let speeds = self.speed.add(V::splat(speed));
         let signal = speeds.neg_mul_add(self.alpha, mu.mul(self.twice_beta));
+        let signal = V::splat(0.0).min_where_positive(signal, speeds);
         let signal = terms.limit(signal, shown);
         let inverse_density = inverse.mul(soft);
         ViscousPair {
@@ -211,7 +212,7 @@ pub struct Forces {
     /// `de/dt = −½ Σ m_j v_ij · (pair stress) · ∇W_ij` and conduction (W/kg); in the normalised
     /// form without the power of `σ`.
     pub power: F64x8,
-    /// Largest approach speed `|μ_ij|` (m/s) of pairs that have a viscosity.
+    /// Largest approach speed `|μ_ij|` (m/s).
     pub approach: F64x8,
     /// `ε Σ (m_j/ρ̄) (v_j − v_i) W_ij` (m/s); zero without XSPH.
     pub correction: [F64x8; 3],
