@@ -23,12 +23,14 @@ pub trait SignalSpeed: Sync {
 
 impl Signals<'_> {
     /// Speed (m/s) of sound and viscosity of particle `i`: no less than that of the approach,
-    /// however little viscosity there is. Without sound where nothing `carries` it.
+    /// however little viscosity there is. Sound counts as no faster than `fastest` (m/s).
     #[inline(always)]
     #[must_use]
-    pub fn of<F: SignalSpeed>(&self, i: usize, carries: bool) -> f64 {
+    pub fn of<F: SignalSpeed>(&self, i: usize, fastest: f64) -> f64 {
         let Viscosity { alpha, beta, .. } = self.viscosity;
-        let c = if carries { self.sound_speed[i] } else { 0.0 };
+        let own = self.sound_speed[i];
+        // NaN stays NaN.
+        let c = if own > fastest { fastest } else { own };
         let approach = self.approach_speed[i];
         let signal = c + 0.6 * (alpha * c + beta * approach);
         // Not `max`, which would hide what is NaN.

@@ -37,6 +37,8 @@ pub struct StepControl {
     pub(super) limits: Limits,
     flight: Flight,
     options: TimeStepOptions,
+    /// Sound speed of each body's material at rest (m/s).
+    cold_sound: Vec<f64>,
     /// Particle of the last candidate that was chosen.
     id: u64,
     /// The last candidates, for post-mortems.
@@ -53,6 +55,9 @@ impl StepControl {
             limits: Limits::new(case, comm),
             flight: Flight::new(table),
             options: case.time_step,
+            cold_sound: (case.bodies.iter())
+                .map(|body| case.materials[body.material].longitudinal_speed())
+                .collect(),
             id: 0,
             past: VecDeque::with_capacity(PAST_STEPS),
         }
@@ -64,6 +69,7 @@ impl StepControl {
             sph,
             limits: &self.limits,
             options: self.options,
+            cold_sound: &self.cold_sound,
             gravity,
         }
     }
@@ -223,6 +229,8 @@ pub(super) struct CriteriaInputs<'a> {
     sph: &'a Sph,
     limits: &'a Limits,
     options: TimeStepOptions,
+    /// By body (m/s).
+    cold_sound: &'a [f64],
     /// Acceleration (m/s²).
     gravity: [f64; 3],
 }
@@ -233,6 +241,7 @@ pub(super) struct Criteria<'a, F> {
     signals: Signals<'a>,
     options: TimeStepOptions,
     contact: bool,
+    cold_sound: &'a [f64],
     gravity: [f64; 3],
     limits: &'a Limits,
     formulation: PhantomData<F>,
@@ -244,6 +253,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
             sph,
             limits,
             options,
+            cold_sound,
             gravity,
         } = inputs;
         let speeds = [fields.sound_speed, fields.approach_speed];
@@ -252,6 +262,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
             contact: !fields.contact_stiffness.is_empty(),
             fields,
             options,
+            cold_sound,
             gravity,
             limits,
             formulation: PhantomData,
@@ -304,14 +315,18 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
         by_sound & by_force & by_contact & inside & near
     }
 
-    /// Speed of the signals (m/s) that particle `i` sends. Those of failed matter without neighbours are no sound, since
-    /// nothing carries it: its acceleration is zero to the bit. Hot spray would keep all others waiting.
+    /// Speed of the signals (m/s) that particle `i` sends. Sound of failed matter without neighbours counts as that of its
+    /// material at rest, since nothing carries it: its acceleration is zero to the bit. Hot spray would keep all others waiting.
     #[inline(always)]
     fn signal(&self, i: usize) -> f64 {
         let fields = &self.fields;
         let has_failed = fields.damage.get(i).is_some_and(|&damage| damage >= FAILED);
-        let flies_alone = has_failed && fields.acceleration[i] == [0.0; 3];
-        self.signals.of::<F>(i, !flies_alone)
+        let fastest = if has_failed && fields.acceleration[i] == [0.0; 3] {
+            self.cold_sound[fields.body[i] as usize]
+        } else {
+            f64::INFINITY
+        };
+        self.signals.of::<F>(i, fastest)
     }
 
     #[inline(always)]
