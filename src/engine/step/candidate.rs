@@ -287,8 +287,7 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
             let candidate = self.candidate(i, moved);
             if candidate < best.best {
                 let by_sound = candidate[1] == Reason::Sound as u64 && candidate[0] != ERROR;
-                let by_sound =
-                    by_sound.then(|| [self.fields.smoothing_length[i], self.signal(i)]);
+                let by_sound = by_sound.then(|| [self.fields.smoothing_length[i], self.signal(i)]);
                 *best = BestCandidate::new(candidate, self.limits.step_min, by_sound);
             }
         }
