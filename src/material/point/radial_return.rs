@@ -110,8 +110,8 @@ fn increments<V: Lanes, F: FlowStress>(flows: u8, q: V, three_g: V, excess: V, f
         let next = now.add(residual.div(three_g.add(slope))).store();
         let residual = residual.store();
         for k in 0..LANES {
-            let is_open = open >> k & 1 == 1 && !(residual.0[k].abs() <= close.0[k]);
-            if !is_open {
+            let is_root = residual.0[k].abs() <= close.0[k];
+            if is_root || open >> k & 1 == 0 {
                 open &= !(1 << k);
                 continue;
             }
