@@ -164,9 +164,13 @@ impl Law for JohnsonCook {
         for k in 0..LANES {
             homologous.0[k] = now.thermal.homologous(now.temperature[k]);
         }
-        let homologous = &homologous;
-        let m = self.m;
-        now.softening = instructions().run(Softening { homologous, m }).0;
+        // What has not been heated, as most of a plate, takes no power.
+        now.softening = if homologous.0 == [0.0; LANES] {
+            [1.0; LANES]
+        } else {
+            let (homologous, m) = (&homologous, self.m);
+            instructions().run(Softening { homologous, m }).0
+        };
     }
 
     fn hardening(&self, point: &PointBatch, k: usize, now: &Conditions) -> [f64; 2] {
