@@ -20,7 +20,7 @@ mod motion;
 
 pub use forces::CorrectedRecord;
 
-use super::limiter::limiter;
+use super::limiter::Limiter;
 use super::neighbourhood::Neighbourhood;
 pub(crate) use motion::spin;
 use motion::{PlainSums, motion};
@@ -93,8 +93,8 @@ pub struct Corrected {
     pub gradient: [F64x8; 9],
     /// Mean velocity of the neighbours against the particle that no linear field explains (m/s).
     pub rest: [F64x8; 3],
-    /// The limiter of the linear viscosity.
-    pub limiter: F64x8,
+    /// Limiters of the viscosity.
+    pub limiter: Limiter,
     /// The corrections.
     pub correction: Correction,
 }
@@ -122,7 +122,7 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
         Corrected {
             gradient: store_all(&motion.gradient),
             rest: store_all(&motion.rest),
-            limiter: limiter(&motion.gradient, &motion.rest, plain.square_length()).store(),
+            limiter: Limiter::new(&motion.gradient, &motion.rest, plain.square_length()),
             correction,
         }
     }

@@ -1,46 +1,101 @@
 //! The limiter of the linear artificial viscosity (theory page "Smoothed particle hydrodynamics").
 
-use numerics::lanes::Lanes;
+use numerics::lanes::{F64x8, LANES, Lanes};
 
-/// The share of the linear viscosity that the motion of a neighbourhood takes,
+/// What [`Limiter::rough`] is at a share of one: κ.
+const ROUGH: f64 = 3.0;
+/// Closing speed over sound speed at which a neighbourhood takes all of the viscosity.
+const STRONG: f64 = 0.3;
+
+/// Limiters of the artificial viscosity, as of the motion of eight neighbourhoods.
 ///
-/// `min(1, (max(tr D, −2 tr D)² + (|w|/s)²)/‖D‖²)`
-///
-/// from the symmetric part D of its velocity gradient (1/s, row-major) with the norm of Frobenius, the mean velocity w (m/s)
-/// of the neighbours that no linear field explains, and the mean square s² (m²) of their distances.
-/// It is one where matter closes along one axis or more and where neighbours rattle, and zero in a
-/// smooth flow without change of volume, in rotation and at rest.
-#[inline(always)]
-#[must_use]
-pub fn limiter<V: Lanes>(l: &[V; 9], rest: &[V; 3], square_length: V) -> V {
-    let few = V::splat(f64::MIN_POSITIVE);
-    let rate = l[0].add(l[4]).add(l[8]);
-    let counted = rate.max(rate.mul(V::splat(-2.0)));
-    let rest = rest[2].mul_add(rest[2], rest[1].mul_add(rest[1], rest[0].mul(rest[0])));
-    let rough = rest.div(square_length.max(few));
-    let mut square = few;
-    for a in [0, 4, 8] {
-        square = l[a].mul_add(l[a], square);
+/// With the symmetric part D of the velocity gradient (1/s) and its norm of Frobenius, the mean velocity w (m/s) of the
+/// neighbours that no linear field explains, and the mean square s² (m²) of their distances.
+#[derive(Debug, Clone, Copy)]
+pub struct Limiter {
+    /// The share that the linear term takes: `f = min(1, (max(tr D, −2 tr D)² + (|w|/s)²)/‖D‖²)`.
+    ///
+    /// It is one where matter closes along one axis or more and where neighbours rattle, and zero in a
+    /// smooth flow without change of volume, in rotation and at rest.
+    pub linear: F64x8,
+    /// `κ (|w|/s)²/‖D‖²`.
+    rough: F64x8,
+    /// Speed (m/s) at which a neighbourhood closes in: `s max(0, −tr D)`.
+    closing: F64x8,
+}
+
+impl Limiter {
+    /// Of a neighbourhood in which nothing moves against each other.
+    pub const RESTING: Self = Self {
+        linear: F64x8([0.0; LANES]),
+        rough: F64x8([0.0; LANES]),
+        closing: F64x8([0.0; LANES]),
+    };
+
+    /// From a velocity gradient (1/s, row-major), w (m/s) and s² (m²).
+    #[inline(always)]
+    #[must_use]
+    pub fn new<V: Lanes>(l: &[V; 9], rest: &[V; 3], square_length: V) -> Self {
+        let (zero, few) = (V::splat(0.0), V::splat(f64::MIN_POSITIVE));
+        let rate = l[0].add(l[4]).add(l[8]);
+        let counted = rate.max(rate.mul(V::splat(-2.0)));
+        let rest = rest[2].mul_add(rest[2], rest[1].mul_add(rest[1], rest[0].mul(rest[0])));
+        let square_length = square_length.max(few);
+        let rough = rest.div(square_length);
+        let mut square = few;
+        for a in [0, 4, 8] {
+            square = l[a].mul_add(l[a], square);
+        }
+        // Twice the square of each off-diagonal component: that of the sum of the two of L, halved.
+        let half = V::splat(0.5);
+        for (a, b) in [(1, 3), (2, 6), (5, 7)] {
+            let twice = l[a].add(l[b]);
+            square = twice.mul_add(twice.mul(half), square);
+        }
+        let linear = V::splat(1.0).min(counted.mul_add(counted, rough).div(square));
+        let closing = zero.sub(rate).max(zero).mul(square_length.sqrt());
+        Self {
+            linear: linear.store(),
+            rough: rough.mul(V::splat(ROUGH)).div(square).store(),
+            closing: closing.store(),
+        }
     }
-    // Twice the square of each off-diagonal component: that of the sum of the two of L, halved.
-    let half = V::splat(0.5);
-    for (a, b) in [(1, 3), (2, 6), (5, 7)] {
-        let twice = l[a].add(l[b]);
-        square = twice.mul_add(twice.mul(half), square);
+
+    /// The share that both terms take, `g = min(1, κ (|w|/s)²/‖D‖² + (s max(0, −tr D)/.3c)²)`, of points with these
+    /// sound speeds (m/s).
+    ///
+    /// It falls with the square of the spacing in a smooth flow, and is one in a front of a few particles, where
+    /// neighbours rattle, and where matter is struck.
+    #[inline(always)]
+    #[must_use]
+    pub fn both<V: Lanes>(&self, sound_speed: V) -> F64x8 {
+        let few = V::splat(f64::MIN_POSITIVE);
+        let limit = sound_speed.mul(V::splat(STRONG)).max(few);
+        let strong = V::load(&self.closing).div(limit);
+        let share = strong.mul_add(strong, V::load(&self.rough));
+        V::splat(1.0).min(share).store()
     }
-    V::splat(1.0).min(counted.mul_add(counted, rough).div(square))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::limiter;
+    use super::Limiter;
     use numerics::lanes::{F64x8, LANES};
     use proptest::prelude::*;
 
-    /// Of one neighbourhood whose neighbours are a metre away.
-    fn of(l: &[f64; 9], rest: [f64; 3]) -> f64 {
+    fn all(l: &[f64; 9], rest: [f64; 3]) -> Limiter {
         let lanes = |c: f64| F64x8([c; LANES]);
-        limiter(&l.map(lanes), &rest.map(lanes), lanes(1.0)).0[0]
+        Limiter::new(&l.map(lanes), &rest.map(lanes), lanes(1.0))
+    }
+
+    /// Of the linear term, in one neighbourhood whose neighbours are a metre away.
+    fn of(l: &[f64; 9], rest: [f64; 3]) -> f64 {
+        all(l, rest).linear.0[0]
+    }
+
+    /// Of both terms there, where sound runs a metre in a second.
+    fn both(l: &[f64; 9], rest: [f64; 3]) -> f64 {
+        all(l, rest).both(F64x8([1.0; LANES])).0[0]
     }
 
     fn diagonal(x: f64, y: f64, z: f64) -> [f64; 9] {
@@ -80,6 +135,22 @@ mod tests {
         assert_eq!(of(&shear, [0.0, 1.5, 0.0]), 1.0);
         assert!((of(&shear, [0.0, 0.1, 0.0]) - 0.005).abs() < 1e-15);
         assert_eq!(of(&[0.0; 9], [1e-9, 0.0, 0.0]), 1.0);
+    }
+
+    /// Of both terms, a wave of a thousandth of the sound speed takes what its front bends, and a blow of a third all.
+    #[test]
+    fn fronts_and_blows_take_both_terms() {
+        let wave = diagonal(-1e-3, 0.0, 0.0);
+        assert!((both(&wave, SMOOTH) - 1e-6 / 0.09).abs() < 1e-15);
+        let bend = both(&wave, [1e-4, 0.0, 0.0]);
+        assert!((bend - 0.03 - 1e-6 / 0.09).abs() < 1e-12, "{bend}");
+        assert_eq!(both(&wave, [6e-4, 0.0, 0.0]), 1.0);
+        assert_eq!(both(&diagonal(-0.2, -0.1, -0.1), SMOOTH), 1.0);
+        assert_eq!(both(&diagonal(0.2, 0.1, 0.1), SMOOTH), 0.0);
+        assert_eq!(both(&[0.0; 9], SMOOTH), 0.0);
+        assert!(both(&[f64::NAN; 9], SMOOTH).is_nan());
+        let cold = all(&wave, SMOOTH).both(F64x8([0.0; LANES]));
+        assert_eq!(cold.0[0], 1.0);
     }
 
     /// A body that vibrates while it turns takes as much as one at rest.

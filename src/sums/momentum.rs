@@ -146,12 +146,13 @@ impl<V: Lanes> Viscous<V> {
     }
 
     /// Of the receivers with a neighbour of this density and viscous speed at the relative velocity
-    /// `v`, with the inverse of their [`SoftSquare`].
+    /// `v`, with the inverse of their [`SoftSquare`]. Their smoothing length comes twice (m): as it is, and by the share of
+    /// the viscosity that the pair takes.
     #[inline(always)]
     pub fn pair<const TERMS: bool>(
         &self,
         terms: &TermSums<V, TERMS>,
-        (separation, h, inverse): (&Separation<V>, V, V),
+        (separation, [h, taken], inverse): (&Separation<V>, [V; 2], V),
         v: &[V; 3],
         (density, speed): (f64, f64),
         shown: &TermRecord,
@@ -161,7 +162,7 @@ impl<V: Lanes> Viscous<V> {
         let rho_sum = self.rho.add(V::splat(density));
         // μ = h v·r/(r² + 0.01 h²) for approaching pairs.
         let closing = r[2].mul_add(v[2], r[1].mul_add(v[1], r[0].mul(v[0])));
-        let mu = h
+        let mu = taken
             .mul(closing)
             .mul_add(inverse.mul(rho_sum), self.negligible)
             .min(V::splat(0.0));
@@ -293,7 +294,7 @@ pub(crate) fn sum<V: Lanes, S: PairScale, O: OwnStress<V>, const TERMS: bool>(
         let along = |a: usize| velocity[a].sub(V::splat(source.velocity[a]));
         let v = [along(0), along(1), along(2)];
         let state_of = (state.density(), state.viscous_speed());
-        let viscous = viscous.pair(&terms, (now, pair.h, pair.beside), &v, state_of, shown);
+        let viscous = viscous.pair(&terms, (now, [pair.h; 2], pair.beside), &v, state_of, shown);
         fastest = fastest.min_where_positive(viscous.mu, kernel.inside);
         let mut stress = own.plain(state, viscous.pi);
         if O::SHAPED || terms.need_shape() {

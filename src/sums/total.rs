@@ -18,7 +18,7 @@ mod forces;
 pub use forces::TotalRecord;
 
 use super::corrected::{add_moment, spin};
-use super::limiter::limiter;
+use super::limiter::Limiter;
 use super::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
@@ -98,8 +98,8 @@ pub struct Total {
     pub gradient: [F64x8; 9],
     /// Mean velocity of the neighbours against the particle that no linear field explains (m/s).
     pub rest: [F64x8; 3],
-    /// The limiter of the linear viscosity.
-    pub limiter: F64x8,
+    /// Limiters of the viscosity.
+    pub limiter: Limiter,
     /// `T`, row-major.
     pub outer: [F64x8; 9],
     /// `N`, row-major.
@@ -312,7 +312,7 @@ impl<S: PairScale> Vectorised for TotalGradient<'_, S> {
         let rest = [rest(0), rest(1), rest(2)];
         Total {
             gradient: store_all(&gradient),
-            limiter: limiter(&gradient, &rest, square.div(weight)).store(),
+            limiter: Limiter::new(&gradient, &rest, square.div(weight)),
             rest: store_all(&rest),
             outer: store_all(&outer),
             inner: store_all(&inner),

@@ -166,6 +166,7 @@ impl World {
                 hourglass: hourglass.into(),
                 density,
                 viscous_speed,
+                viscous_share: 1.0,
             })
             .collect();
         let chunks = self.found.clusters.chunks();

@@ -21,18 +21,20 @@ pub struct CorrectedRecord {
     pub density: f64,
     /// Speed of the artificial viscosity (m/s).
     pub viscous_speed: f64,
+    /// Share of the artificial viscosity.
+    pub viscous_share: f64,
 }
 
 impl CorrectedRecord {
     /// From `P` (Pa), hourglass displacement (m) and its stiffness ξ, density (kg/m³), sound speed
-    /// (m/s) and that of the artificial viscosity (m/s).
+    /// (m/s), and speed (m/s) and share of the artificial viscosity.
     #[inline(always)]
     #[must_use]
     pub fn new(
         stress: &[f64; 9],
         displacement: &[f64; 3],
         stiffness: f64,
-        [density, sound_speed, viscous_speed]: [f64; 3],
+        [density, sound_speed, viscous_speed, viscous_share]: [f64; 4],
     ) -> Self {
         let modulus = stiffness * density * sound_speed * sound_speed;
         Self {
@@ -44,6 +46,7 @@ impl CorrectedRecord {
             ],
             density,
             viscous_speed,
+            viscous_share,
         }
     }
 }
@@ -101,6 +104,7 @@ impl PairStress for CorrectedRecord {
         let (position, velocity) = around.motion::<V>();
         let own = records(sums.stresses, &around.receivers);
         let hourglass: [V; 3] = gather_all(&own, |record, a| record.hourglass[a]);
+        let share: V = gather(&own, |record| record.viscous_share);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
         let viscous = Viscous::<V>::begin(
@@ -127,9 +131,10 @@ impl PairStress for CorrectedRecord {
                 v[a] = v[a].sub(V::splat(source.velocity[a]));
                 bend[a] = bend[a].sub(V::splat(state.hourglass[a]));
             }
+            let taken = share.max(V::splat(state.viscous_share)).mul(pair.h);
             let now = viscous.pair(
                 &terms,
-                (separation, pair.h, pair.beside),
+                (separation, [pair.h, taken], pair.beside),
                 &v,
                 (state.density, state.viscous_speed),
                 shown,

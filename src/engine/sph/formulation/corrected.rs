@@ -23,6 +23,7 @@ use particles::{
     GRAIN, MirrorMask, Mirrors, ParticleStore, Scatter, material_points, records_of, resize,
 };
 use sums::corrected::{CorrectedGradient, CorrectedRecord, Correction};
+use sums::limiter::Limiter;
 use sums::neighbourhood::Neighbourhood;
 use sums::step::{Side, Step};
 
@@ -216,7 +217,7 @@ impl Gradient for CorrectedGradients<'_> {
             )
         } else {
             // No relative velocity: the sums would be these, and nobody may need the correction.
-            ([zero; 9], [zero; 3], zero, None)
+            ([zero; 9], [zero; 3], Limiter::RESTING, None)
         };
         let show = ShowCorrected {
             target: self,
@@ -235,7 +236,7 @@ impl Gradient for CorrectedGradients<'_> {
                 &[0.0; 9],
                 &[0.0; 3],
                 self.hourglass.stiffness,
-                [density, sound_speed, 0.0],
+                [density, sound_speed, 0.0, 0.0],
             );
         }
     }
@@ -254,8 +255,8 @@ fn reflected(record: &CorrectedRecord, mirror_mask: MirrorMask) -> CorrectedReco
 struct ShowCorrected<'a, S> {
     target: &'a CorrectedGradients<'a>,
     rest: [F64x8; 3],
-    /// The limiter of the linear viscosity.
-    limiter: F64x8,
+    /// Limiters of the viscosity.
+    limiter: Limiter,
     /// Once it is known.
     correction: Option<Correction>,
     sums: CorrectedGradient<'a, S>,
@@ -285,13 +286,15 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
                 target.hourglass.advance::<V>(points, &deviator, &self.rest);
             }
         }
+        let share = self.limiter.both(V::read(&after.sound_speed));
         points.each(|k, i, index| {
             let mut own = [0.0; 9];
             for c in 0..9 {
                 own[c] = stress[c].0[k];
             }
-            let viscous_speed = after.viscous_speed(k, self.limiter.0[k]);
-            let state = [after.density[k], after.sound_speed[k], viscous_speed];
+            let viscous_speed = after.viscous_speed(k, self.limiter.linear.0[k]);
+            let sound_speed = after.sound_speed[k];
+            let state = [after.density[k], sound_speed, viscous_speed, share.0[k]];
             // SAFETY: by the contract of this function.
             unsafe {
                 let displacement = target.hourglass.displacement.slot(i);

@@ -325,6 +325,7 @@ impl TotalBodies {
                     hourglass: moduli[slot],
                     density: record.density,
                     viscous_speed: record.viscous_speed,
+                    viscous_share: record.viscous_share,
                     position: mirrors.reflect_position(&positions[slot], mirror_mask),
                     deformation: Mirrors::reflect_tensor(&deformations[slot], mirror_mask),
                 }
@@ -563,6 +564,7 @@ impl Show for ShowTotal<'_> {
             sigma[4 * a] = sigma[4 * a].sub(pressure);
         }
         let stress: [F64x8; 9] = store_all::<V, 9>(&total.apply(&sigma));
+        let share = total.limiter.both(V::read(&after.sound_speed));
         let (mut leaves, mut farthest) = (0, 0.0_f64);
         points.each(|k, i, index| {
             let motion = &target.lists.motion()[index];
@@ -572,8 +574,9 @@ impl Show for ShowTotal<'_> {
             for c in 0..9 {
                 own[c] = expansion * stress[c].0[k];
             }
-            let viscous_speed = after.viscous_speed(k, total.limiter.0[k]);
-            let state = [after.density[k], after.sound_speed[k], viscous_speed];
+            let viscous_speed = after.viscous_speed(k, total.limiter.linear.0[k]);
+            let sound_speed = after.sound_speed[k];
+            let state = [after.density[k], sound_speed, viscous_speed, share.0[k]];
             let expands = total.determinant.0[k];
             let torn = [
                 (Tear::Failure, after.damage[k] >= FAILED),
@@ -590,7 +593,7 @@ impl Show for ShowTotal<'_> {
             farthest = farthest.max(total.farthest.0[k]);
             // Signals of the linear viscosity are those of its limiter.
             let alpha = 0.6 * target.alpha;
-            let speed = (1.0 + alpha * total.limiter.0[k]) / (1.0 + alpha);
+            let speed = (1.0 + alpha * total.limiter.linear.0[k]) / (1.0 + alpha);
             let yields = points.yield_stress;
             let flow = 3.0 * points.shear_modulus * after.plastic_strain[k];
             let share = if flow > 0.0 && yields.is_finite() {
@@ -612,6 +615,7 @@ impl Show for ShowTotal<'_> {
                     hourglass: modulus,
                     density: record.density,
                     viscous_speed: record.viscous_speed,
+                    viscous_share: record.viscous_share,
                     position: target.positions[index],
                     deformation,
                 };
