@@ -25,8 +25,6 @@ pub struct TotalRecord {
     pub density: f64,
     /// Sound speed by the limiter of the linear viscosity (m/s).
     pub viscous_speed: f64,
-    /// Share of the artificial viscosity.
-    pub viscous_share: f64,
     /// Position (m).
     pub position: [f64; 3],
     /// Deformation gradient, row-major.
@@ -166,7 +164,6 @@ impl PairStress for TotalRecord {
         let own = records(sums.stresses, &around.receivers);
         let position: [V; 3] = gather_all(&own, |record, a| record.position[a]);
         let hourglass: V = gather(&own, |record| record.hourglass);
-        let share: V = gather(&own, |record| record.viscous_share);
         let deformation: [V; 9] = gather_all(&own, |record, c| record.deformation[c]);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
@@ -205,10 +202,9 @@ impl PairStress for TotalRecord {
                 distance,
                 inverse,
             };
-            let taken = share.max(V::splat(state.viscous_share)).mul(pair.h);
             let now = viscous.pair(
                 &terms,
-                (&separation, [pair.h, taken], beside),
+                (&separation, [pair.h; 2], beside),
                 &v,
                 (state.density, state.viscous_speed),
                 shown,

@@ -293,8 +293,11 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
                 own[c] = stress[c].0[k];
             }
             let viscous_speed = after.viscous_speed(k, self.limiter.linear.0[k]);
+            // Plastic flow damps what the viscosity would.
+            let flows = after.plastic_strain[k] > points.before.plastic_strain[k];
+            let share = if flows { share.0[k] } else { 1.0 };
             let sound_speed = after.sound_speed[k];
-            let state = [after.density[k], sound_speed, viscous_speed, share.0[k]];
+            let state = [after.density[k], sound_speed, viscous_speed, share];
             // SAFETY: by the contract of this function.
             unsafe {
                 let displacement = target.hourglass.displacement.slot(i);

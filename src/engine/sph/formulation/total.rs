@@ -325,7 +325,6 @@ impl TotalBodies {
                     hourglass: moduli[slot],
                     density: record.density,
                     viscous_speed: record.viscous_speed,
-                    viscous_share: record.viscous_share,
                     position: mirrors.reflect_position(&positions[slot], mirror_mask),
                     deformation: Mirrors::reflect_tensor(&deformations[slot], mirror_mask),
                 }
@@ -564,7 +563,6 @@ impl Show for ShowTotal<'_> {
             sigma[4 * a] = sigma[4 * a].sub(pressure);
         }
         let stress: [F64x8; 9] = store_all::<V, 9>(&total.apply(&sigma));
-        let share = total.limiter.both(V::read(&after.sound_speed));
         let (mut leaves, mut farthest) = (0, 0.0_f64);
         points.each(|k, i, index| {
             let motion = &target.lists.motion()[index];
@@ -576,7 +574,7 @@ impl Show for ShowTotal<'_> {
             }
             let viscous_speed = after.viscous_speed(k, total.limiter.linear.0[k]);
             let sound_speed = after.sound_speed[k];
-            let state = [after.density[k], sound_speed, viscous_speed, share.0[k]];
+            let state = [after.density[k], sound_speed, viscous_speed, 1.0];
             let expands = total.determinant.0[k];
             let torn = [
                 (Tear::Failure, after.damage[k] >= FAILED),
@@ -615,7 +613,6 @@ impl Show for ShowTotal<'_> {
                     hourglass: modulus,
                     density: record.density,
                     viscous_speed: record.viscous_speed,
-                    viscous_share: record.viscous_share,
                     position: target.positions[index],
                     deformation,
                 };
