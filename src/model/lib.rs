@@ -187,6 +187,13 @@ impl Case {
         bodies.any(|body| self.materials[body.material].failure.has_memory())
     }
 
+    /// `true` if a material of the case has pores.
+    #[must_use]
+    pub fn is_porous(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].porosity.is_some())
+    }
+
     /// `true` if failure of a material of the case changes this field.
     #[must_use]
     pub fn fails_with(&self, field: &str) -> bool {

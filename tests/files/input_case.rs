@@ -420,7 +420,14 @@ fn a_gas_a_liquid_a_rubber_and_a_hot_metal() {
     assert!((law.shear_modulus - 47.7e9).abs() < 1.0 && (law.reference_rate - 1.0).abs() < 1e-15);
     let thermal = case.materials[3].thermal.as_ref().unwrap().constants();
     assert!((thermal.reference_temperature - 300.0).abs() < 1e-12);
-    assert!((case.materials[3].temperature(8930.0, 38300.0, 0.0).unwrap() - 400.0).abs() < 1e-9);
+    assert!(
+        (case.materials[3]
+            .temperature(8930.0, 38300.0, [0.0, 0.0])
+            .unwrap()
+            - 400.0)
+            .abs()
+            < 1e-9
+    );
     let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(meaning(&again), meaning(&case));
 }

@@ -24,6 +24,7 @@ fn fluid(reference_density: f64, eos: Eos) -> Material {
         strength: Strength::None,
         failure: Failure::NONE,
         thermal: None,
+        porosity: None,
     }
 }
 

@@ -13,6 +13,7 @@ mod exact_sum;
 mod failure;
 mod fluids;
 mod plastic;
+mod porosity;
 mod rubber;
 mod spall;
 mod strength;

@@ -33,6 +33,7 @@ mod hit_bar;
 mod hole;
 mod options;
 mod penalty;
+mod porous;
 mod quarter;
 mod rings;
 mod self_contact;

@@ -3,7 +3,7 @@
 //! One is a file that implements [`EquationOfState`]; its row here gives it a name and a key of the input, its rows in
 //! `input/schema/materials.rs` its constants.
 
-use super::{Constants, Contradiction, LANES, Lanes, Listed};
+use super::{Constants, Contradiction, LANES, Lanes, Listed, PointBatch, Porosity, PorousPoint};
 
 /// Pressure and its derivatives at one state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Response {
 impl Response {
     /// Takes the response of one point to a lane.
     #[inline(always)]
-    fn set(&mut self, k: usize, at: PointResponse) {
+    pub(super) fn set(&mut self, k: usize, at: PointResponse) {
         self.pressure[k] = at.pressure;
         self.dp_drho[k] = at.dp_drho;
         self.dp_de[k] = at.dp_de;
@@ -154,6 +154,18 @@ macro_rules! equations_of_state {
                 match self {
                     $( Self::$law(law) if !$law::APART => law.of_batch(rho0, rho, e), )+
                     _ => self.apart(rho0, rho, e),
+                }
+            }
+
+            /// Points of a batch of porous matter.
+            pub(super) fn porous(
+                &self,
+                porosity: &Porosity,
+                batch: &PointBatch,
+                crushes: bool,
+            ) -> [PorousPoint; LANES] {
+                match self {
+                    $( Self::$law(law) => porosity.of_batch(law, batch, crushes), )+
                 }
             }
 

@@ -82,6 +82,7 @@ pub fn find(name: &str) -> Option<Material> {
             eos: parts.eos,
             strength: parts.strength,
             failure: parts.failure,
+            porosity: None,
         }
     })
 }

@@ -8,14 +8,17 @@ use crate::input::quantity::{
     Density, FractureEnergy, NumberDensity, PerPressure, PerTemperature, Placed, Pressure, Rate,
     SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
-use material::{AfterSpall, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
+use material::{
+    AfterSpall, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm,
+    StrengthOf,
+};
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
     MaterialParams {
         /// Name in the library.
         library: Option<Spanned<String>>;
-        /// Reference density.
+        /// Reference density; of a porous material that of the solid between the pores.
         density: Option<Placed<Density>>, Positive;
         /// Equation of state.
         eos: Option<Spanned<EosParams>>;
@@ -25,6 +28,8 @@ optional_tables! {
         failure: Option<Spanned<OrNone<FailureParams>>>;
         /// Temperature.
         thermal: Option<Spanned<ThermalParams>>;
+        /// Pores.
+        porosity: Option<Spanned<OrNone<PorosityParams>>>;
     }
 
     /// `thermal`
@@ -255,6 +260,43 @@ macro_rules! failure_laws {
 }
 pub(in crate::input) use failure_laws;
 
+/// Passes the laws of compaction to the macro `$then`, in the same form.
+macro_rules! compaction_laws {
+    ($then:ident) => {
+        $then! {
+            /// `porosity.p_alpha`: distension from the pressure.
+            p_alpha: PAlphaParams => PAlpha {
+                /// Pressure from which on pores crush.
+                elastic_pressure: Placed<Pressure>, NotNegative;
+                /// Pressure at which all pores are crushed.
+                solid_pressure: Placed<Pressure>, Positive;
+                /// Exponent of the crush curve.
+                exponent: Spanned<f64> = 2.0, Positive;
+                /// Pressure at which the steep beginning of the crush curve ends.
+                transition_pressure: Placed<Pressure> = "0", NotNegative => "no steep beginning";
+                /// Distension of the steep beginning.
+                transition_distension: Spanned<f64> = 1.0, Positive;
+                /// Exponent of the steep beginning.
+                transition_exponent: Spanned<f64> = 2.0, Positive;
+                /// Bulk sound speed of virgin matter.
+                sound_speed: Placed<Velocity> = "0", NotNegative => "that of the solid";
+            }
+            /// `porosity.epsilon_alpha`: distension from the volumetric strain.
+            epsilon_alpha: EpsilonAlphaParams => EpsilonAlpha {
+                /// Volumetric strain from which on pores crush, negative in compression.
+                elastic_strain: Spanned<f64> = 0.0, NotPositive;
+                /// Volumetric strain at which the exponential part of the crush curve ends.
+                transition_strain: Spanned<f64>, NotPositive;
+                /// Rate of the exponential part.
+                kappa: Spanned<f64>, UpToOne;
+                /// Bulk sound speed of virgin matter.
+                sound_speed: Placed<Velocity> = "0", NotNegative => "that of the solid";
+            }
+        }
+    };
+}
+pub(in crate::input) use compaction_laws;
+
 /// Declares the tables of laws, and the one that has them all.
 macro_rules! law_tables {
     ($(
@@ -278,6 +320,7 @@ macro_rules! law_tables {
 equations_of_state!(law_tables);
 strength_laws!(law_tables);
 failure_laws!(law_tables);
+compaction_laws!(law_tables);
 
 macro_rules! eos_table {
     ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } $(or { $($way:tt)+ })? )+) => {
@@ -320,3 +363,23 @@ macro_rules! failure_table {
     };
 }
 failure_laws!(failure_table);
+
+macro_rules! porosity_table {
+    ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+        optional_tables! {
+            /// `porosity`: exactly one of these laws, and what they have in common.
+            PorosityParams {
+                $( $(#[doc = $doc])+ $law: Option<$table>; )+
+                /// Initial distension: density of the solid over that of the whole.
+                distension: Option<Spanned<f64>>, Within(1.0, 100.0);
+                /// Initial volume of pores over that of the whole, in place of the distension.
+                porosity: Option<Spanned<f64>>, Within(0.0, 0.99);
+                /// What the constants of the strength belong to.
+                strength: Option<Spanned<StrengthOf>>;
+                /// What crushing damages.
+                damage: Option<Spanned<CompactionDamage>>;
+            }
+        }
+    };
+}
+compaction_laws!(porosity_table);

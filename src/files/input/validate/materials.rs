@@ -7,6 +7,7 @@ use toml::Spanned;
 use super::check::required;
 use super::eos::eos;
 use super::failure::failure;
+use super::porosity::{Matrix, porosity};
 use super::strength::strength;
 use crate::input::forms::Named;
 use crate::input::names;
@@ -50,10 +51,10 @@ fn material(
     if base.is_none() && params.density.is_none() {
         return Err(missing("density"));
     }
-    let known_density = base.map_or(0.0, |b| b.reference_density);
-    let reference_density = params.density()?.unwrap_or(known_density);
+    let known_density = base.map_or(0.0, Material::matter_density);
+    let density = params.density()?.unwrap_or(known_density);
     let eos = match (&params.eos, base.map(|b| &b.eos)) {
-        (Some(table), base) => eos(table, base, reference_density)?,
+        (Some(table), base) => eos(table, base, density)?,
         (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
     };
     let strength = match (&params.strength, base.map(|b| &b.strength)) {
@@ -61,21 +62,25 @@ fn material(
         (None, base) => base.cloned().ok_or_else(|| missing("strength"))?,
     };
     let base_thermal = base.and_then(|b| b.thermal.as_ref());
-    let thermal = thermal(
-        params.thermal.as_ref(),
-        base_thermal,
-        reference_density,
-        &eos,
-    )?;
+    let thermal = thermal(params.thermal.as_ref(), base_thermal, density, &eos)?;
     let (given, known) = (params.failure.as_ref(), base.map(|b| &b.failure));
     let failure = failure(given, known, (&eos, &strength), dimension)?;
+    let matrix = Matrix {
+        eos: &eos,
+        density,
+        strength: &strength,
+        failure: &failure,
+    };
+    let known = base.and_then(|b| b.porosity.as_ref());
+    let pores = porosity(params.porosity.as_ref(), known, &matrix)?;
     let material = Material {
         name: name.get_ref().clone(),
-        reference_density,
+        reference_density: pores.as_ref().map_or(density, |pores| pores.density),
         eos,
         strength,
         failure,
         thermal,
+        porosity: pores,
     };
     match missing_heat(&material) {
         None => Ok(material),
@@ -116,7 +121,7 @@ fn missing_heat(material: &Material) -> Option<&'static str> {
 fn melts_unknown(material: &Material) -> bool {
     material.failure.options.molten == Some(Molten::Fails)
         && material
-            .melting_temperature(material.reference_density)
+            .melting_temperature(material.reference_density, 0.0)
             .is_none()
 }
 

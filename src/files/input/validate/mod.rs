@@ -25,6 +25,7 @@ mod named;
 mod numerical_limits;
 mod output;
 mod particles;
+mod porosity;
 mod region;
 mod shapes;
 mod solids;
