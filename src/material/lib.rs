@@ -18,8 +18,8 @@ pub mod thermal;
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
 pub use eos::{
-    Eos, EquationOfState, IdealGas, Linear, LinearForm, MieGruneisen, PointResponse, Tait,
-    Tillotson,
+    Burn, Eos, EquationOfState, IdealGas, Jwl, Linear, LinearForm, MieGruneisen, PointResponse,
+    Tait, Tillotson, UNLIT,
 };
 pub use point::*;
 pub use porosity::{
@@ -131,7 +131,10 @@ impl Material {
     /// Response and distension of matter that was virgin; pores crush if `crushes`.
     fn porous(&self, density: f64, energy: f64, crushes: bool) -> (PointResponse, f64) {
         let Some(porosity) = &self.porosity else {
-            let response = self.eos.at(self.reference_density, density, energy);
+            let mut response = self.eos.at(self.reference_density, density, energy);
+            if let Eos::Jwl(explosive) = &self.eos {
+                response.pressure = explosive.unburnt(self.reference_density, density);
+            }
             return (response, 1.0);
         };
         let batch = PointBatch {
@@ -392,7 +395,10 @@ impl Material {
 
     /// True if a law follows the state.
     fn follows_state(&self) -> bool {
-        self.strength.follows_state() || self.failure.follows_state() || self.porosity.is_some()
+        self.strength.follows_state()
+            || self.failure.follows_state()
+            || self.porosity.is_some()
+            || self.burns()
     }
 
     /// All laws in their order; without `ALL`, only those that do not follow the state.
@@ -403,8 +409,9 @@ impl Material {
             point::limit_expansion(batch, rho0);
         }
         let before = [batch.distension, batch.compaction];
-        let (response, shares) = match &self.porosity {
-            Some(porosity) if ALL => porosity.respond(&self.eos, batch, dt != 0.0),
+        let (response, shares) = match (&self.porosity, &self.eos) {
+            (Some(porosity), _) if ALL => porosity.respond(&self.eos, batch, dt != 0.0),
+            (_, Eos::Jwl(explosive)) if ALL => (self.burn(explosive, batch, dt), [1.0; LANES]),
             _ => {
                 let response = (self.eos).response(rho0, &batch.density, &batch.specific_energy);
                 (response, [1.0; LANES])
@@ -444,6 +451,23 @@ impl Material {
         }
         self.set_sound_speed(batch, &response, &now.shear_modulus);
         response.pressure
+    }
+
+    /// True if it is an explosive.
+    #[must_use]
+    pub fn burns(&self) -> bool {
+        matches!(self.eos, Eos::Jwl(_))
+    }
+
+    /// Burns a batch for a step (s).
+    fn burn(&self, explosive: &Jwl, batch: &mut PointBatch, dt: f64) -> eos::Response {
+        let mut now = Conditions::new(dt, self.reference_density, [0.0; 2]);
+        now.options = self.failure.options;
+        let mut sizes = [0.0; LANES];
+        for k in 0..LANES {
+            sizes[k] = now.size(batch, k);
+        }
+        explosive.burn_batch(self.reference_density, batch, dt, &sizes)
     }
 
     /// Strength of the matter between pores, whose stress is α times that of the whole, and whose strain is a share of that
@@ -496,7 +520,9 @@ impl Material {
     /// True if a law asks who and how large a particle is, or what plastic work it has taken.
     #[must_use]
     pub fn needs_particle(&self) -> bool {
-        self.failure.asks_identity() || self.needs_temperature() && self.stored_share() > 0.0
+        self.failure.asks_identity()
+            || self.needs_temperature() && self.stored_share() > 0.0
+            || self.burns()
     }
 
     /// True if a law needs the melting temperature of the thermal constants.

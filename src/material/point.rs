@@ -45,7 +45,7 @@ pub use von_mises::VonMises;
 
 /// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role
 /// of each. `Given` is taken from the particle, `State` is taken and written back, and `Answer` is
-/// written back. `Memory` is state of failure or of pores: the same as `State` where a material of the
+/// written back. `Memory` is state of failure, of pores or of burning: the same as `State` where a material of the
 /// case has a law that changes it, zero elsewhere. `Known` is given where a material of the case has a
 /// law that asks for it.
 #[macro_export]
@@ -79,6 +79,10 @@ macro_rules! point_fields {
             compaction: Scalar, Memory;
             /// Distension; zero before the first update, and of matter without pores.
             distension: Scalar, Memory;
+            /// Share of an explosive that has burnt.
+            burn: Scalar, Memory;
+            /// Time until a detonation lights an explosive, negative since (s).
+            lighting_time: Scalar, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).

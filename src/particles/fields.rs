@@ -136,6 +136,10 @@ particle_fields! {
     compaction: Scalar,                   "",       State,    -,              IfHeld,   POROUS;
     /// Distension: density of the matter between pores over the density; zero for materials without porosity.
     distension: Scalar,                   "",       State,    -,              OnDemand, POROUS;
+    /// Share of an explosive that has burnt.
+    burn: Scalar,                         "",       State,    -,              IfHeld,   EXPLOSIVE;
+    /// Time until a detonation lights it, negative since; zero for what is no explosive.
+    lighting_time: Scalar,                "s",      State,    -,              OnDemand, EXPLOSIVE;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

@@ -10,6 +10,7 @@ mod exact_elastic;
 mod exact_gas;
 mod exact_hugoniot;
 mod exact_sum;
+mod explosives;
 mod failure;
 mod fluids;
 mod plastic;

@@ -25,6 +25,7 @@ mod contact_stress;
 mod dam;
 mod debris;
 mod elastic;
+mod explosives;
 mod failure;
 mod flyer;
 mod friction;

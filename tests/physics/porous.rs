@@ -1,7 +1,7 @@
 //! Porous plates in uniaxial strain: the elastic precursor and the shock that crushes.
 //!
 //! The aluminium foam of Jutzi, Benz & Michel (2008), Icarus 198, 242, §5.1 (after Herrmann 1969): Tillotson, α₀ = 1.275,
-//! `P_e` = 80 MPa, `P_s` = 700 MPa, `c_e` = 4110 m/s, without strength, pressed at 458 m/s. The exact answer is two shocks: one to the
+//! `P_e = 80 MPa`, `P_s = 700 MPa`, `c_e = 4110 m/s`, without strength, pressed at 458 m/s. The exact answer is two shocks: one to the
 //! elastic limit, and into that state one that leaves no pores, each by the jump conditions with the solid's equation of state.
 
 use crate::physics_support::{crossing, inline, median, run_with, slope, sorted_by, start};

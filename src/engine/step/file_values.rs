@@ -20,6 +20,7 @@ pub fn set_from_file(body: &Body, particles: &mut ParticleStore, i: usize, index
         (Quantity::Damage, &mut particles.damage),
         (Quantity::FailureEnergy, &mut particles.failure_energy),
         (Quantity::Compaction, &mut particles.compaction),
+        (Quantity::Burn, &mut particles.burn),
     ] {
         // Not every case has use for them.
         if let (Some(&[given]), Some(value)) = (cloud.get(quantity, row), values.get_mut(i)) {

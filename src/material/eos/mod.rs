@@ -192,5 +192,8 @@ equations_of_state! {
     tillotson: Tillotson;
     /// Ideal or stiffened gas.
     ideal_gas: IdealGas;
+    /// Products of an explosive by Jones, Wilkins and Lee, with its burn.
+    jwl: Jwl;
 }
+pub use jwl::{Burn, UNLIT};
 pub use linear::LinearForm;

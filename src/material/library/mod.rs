@@ -30,6 +30,7 @@ macro_rules! records {
 
 mod alloys;
 mod ductile;
+mod explosives;
 mod fluids;
 mod impact;
 mod metal;
@@ -52,6 +53,7 @@ fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
         ductile::RECORDS,
+        explosives::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,
         metals::RECORDS,

@@ -200,7 +200,7 @@ impl Conditions {
     /// Reference size of the point (m) in lane k: edge of the cube, square or length that its mass
     /// fills at the reference density.
     #[inline(always)]
-    pub(super) fn size(&self, point: &PointBatch, k: usize) -> f64 {
+    pub(crate) fn size(&self, point: &PointBatch, k: usize) -> f64 {
         let filled = point.mass[k] / self.reference_density;
         match self.options.dimension {
             1 => filled,

@@ -20,6 +20,7 @@ pub fn of_array(quantity: Quantity) -> &'static [&'static str] {
         Quantity::Damage => &["damage"],
         Quantity::FailureEnergy => &["failure_energy"],
         Quantity::Compaction => &["compaction"],
+        Quantity::Burn => &["burn"],
         Quantity::HourglassDisplacement => &["hourglass_displacement"],
     }
 }

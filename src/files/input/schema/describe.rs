@@ -11,8 +11,8 @@ use crate::input::forms::{Named, OneOrMany, OrNone};
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
 use material::{
-    AfterSpall, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm,
-    StrengthOf,
+    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
+    RateForm, StrengthOf,
 };
 use model::{
     Axis, BodyForm, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
@@ -247,6 +247,7 @@ pub(super) use described_words;
 
 described_words!(
     AfterSpall,
+    Burn,
     CompactionDamage,
     StrengthOf,
     Axis,

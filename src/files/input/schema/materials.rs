@@ -9,8 +9,8 @@ use crate::input::quantity::{
     SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
 use material::{
-    AfterSpall, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm,
-    StrengthOf,
+    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
+    RateForm, StrengthOf,
 };
 
 optional_tables! {
@@ -114,6 +114,35 @@ macro_rules! equations_of_state {
                 stiffening_pressure: Placed<Pressure> = "0", NotNegative;
                 /// Pressure of the reference state.
                 reference_pressure: Placed<Pressure> = "0", NotNegative;
+            }
+            /// `eos.jwl`: products of an explosive.
+            jwl: JwlParams => Jwl {
+                /// Coefficient A.
+                a: Placed<Pressure>, Positive;
+                /// Coefficient B.
+                b: Placed<Pressure>, NotNegative;
+                /// Exponent R₁.
+                r1: Spanned<f64>, Positive;
+                /// Exponent R₂.
+                r2: Spanned<f64>, Positive;
+                /// Grüneisen parameter.
+                omega: Spanned<f64>, Positive;
+                /// Specific energy of detonation; or that of the volume.
+                e0: Placed<SpecificEnergy>, Positive;
+                /// Speed of the detonation.
+                detonation_velocity: Placed<Velocity>, Positive;
+                /// Pressure of Chapman and Jouguet.
+                cj_pressure: Placed<Pressure>, Positive;
+                /// Bulk modulus of unburnt matter.
+                bulk_modulus: Placed<Pressure> = "0", NotNegative => "unburnt matter bears no pressure";
+                /// What burns it.
+                burn: Spanned<Burn> = Burn::Either;
+                /// Width of the programmed burn in particles.
+                width: Spanned<f64> = 3.0, Positive;
+            } or {
+                /// Energy of detonation of a volume of unburnt matter.
+                energy_density: Placed<Pressure>, Positive
+                    => e0: |law: &Jwl, rho0, energy| Jwl { e0: energy / rho0, ..*law };
             }
         }
     };

@@ -7,7 +7,7 @@ use super::laws::law;
 use crate::input::schema::value::Ranged;
 use crate::input::schema::{EosParams, equations_of_state};
 use crate::input::source::Diagnostic;
-use material::{Eos, EquationOfState, Tait};
+use material::{Eos, EquationOfState, Jwl, Tait};
 
 macro_rules! eos {
     ($(

@@ -13,7 +13,7 @@ use crate::input::forms::Named;
 use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
 use crate::input::source::Diagnostic;
-use material::{Eos, Material, Molten, Thermal, ThermalConstants, library};
+use material::{Eos, Material, Molten, Strength, Thermal, ThermalConstants, library};
 
 /// Names and materials in the order of the input.
 pub fn materials(
@@ -82,10 +82,33 @@ fn material(
         thermal,
         porosity: pores,
     };
+    burns_alone(&material, name, params)?;
     match missing_heat(&material) {
         None => Ok(material),
         Some(key) => Err(heat_diagnostic(&material, key, name.span(), params)),
     }
+}
+
+/// Refuses an explosive whose detonation contradicts itself, or which bears shear.
+fn burns_alone(
+    material: &Material,
+    name: &Spanned<String>,
+    params: &MaterialParams,
+) -> Result<(), Diagnostic> {
+    let Eos::Jwl(explosive) = &material.eos else {
+        return Ok(());
+    };
+    if explosive.cj_volume(material.reference_density) <= 0.0 {
+        let at = params.eos.as_ref().map_or(name.span(), Spanned::span);
+        let title = "`cj_pressure` must be below ρ₀ D² of the density and `detonation_velocity`";
+        return Err(Diagnostic::new(at, title));
+    }
+    if !matches!(material.strength, Strength::None | Strength::Viscous(_)) {
+        let at = params.strength.as_ref().map_or(name.span(), Spanned::span);
+        let title = "an explosive burns to gas and has no `strength`";
+        return Err(Diagnostic::new(at, title).help("`strength = \"none\"`"));
+    }
+    Ok(())
 }
 
 /// Says that a law follows the temperature and has no `key`.

@@ -93,8 +93,8 @@ pub fn porosity(
     let OrNone::Table(params) = table.get_ref() else {
         return Ok(None);
     };
-    if matrix.eos.modulus_over_pressure().is_some() {
-        let title = "a gas has no pores that could crush";
+    if matrix.eos.modulus_over_pressure().is_some() || matches!(matrix.eos, Eos::Jwl(_)) {
+        let title = "a gas or an explosive has no pores that could crush";
         return Err(Diagnostic::new(at, title));
     }
     let distension = distension(params, &at, base)?;
