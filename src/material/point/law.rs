@@ -433,8 +433,10 @@ mod tests {
                 let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
                 let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
                 let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
-                // A gas bears no tension that it could fail by.
-                if !matches!(material.eos, Eos::IdealGas(_)) {
+                // A gas, burnt or not, bears no tension that it could fail by.
+                if material.burns() {
+                    named.extend(["burn", "lighting_time"]);
+                } else if !matches!(material.eos, Eos::IdealGas(_)) {
                     named.extend(material.failure.state());
                 }
                 assert_eq!(changed, named, "{name} {failure:?}");
