@@ -18,8 +18,8 @@ pub mod thermal;
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
 pub use eos::{
-    Burn, Eos, EquationOfState, IdealGas, Jwl, Linear, LinearForm, MieGruneisen, PointResponse,
-    Tait, Tillotson, UNLIT,
+    Burn, Eos, EquationOfState, Grid, IdealGas, Jwl, Linear, LinearForm, MieGruneisen, Murnaghan,
+    PointResponse, Table, Tait, Tillotson, UNLIT,
 };
 pub use point::*;
 pub use porosity::{

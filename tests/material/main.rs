@@ -19,4 +19,5 @@ mod rubber;
 mod spall;
 mod strength;
 mod support;
+mod tables;
 mod thermal;

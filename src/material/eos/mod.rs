@@ -194,6 +194,11 @@ equations_of_state! {
     ideal_gas: IdealGas;
     /// Products of an explosive by Jones, Wilkins and Lee, with its burn.
     jwl: Jwl;
+    /// Murnaghan's law, without heat.
+    murnaghan: Murnaghan;
+    /// A table of densities and temperatures.
+    table: Table;
 }
 pub use jwl::{Burn, UNLIT};
 pub use linear::LinearForm;
+pub use table::Grid;

@@ -37,6 +37,7 @@ mod metal;
 mod metals;
 mod paper;
 mod polymers;
+mod porous;
 
 /// Parts from which a record makes its material.
 struct Parts {
@@ -59,6 +60,7 @@ fn records() -> Vec<&'static Record> {
         metals::RECORDS,
         paper::RECORDS,
         polymers::RECORDS,
+        porous::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);
@@ -77,14 +79,17 @@ pub fn find(name: &str) -> Option<Material> {
     record(name).map(|record| {
         let parts = (record.make)();
         let heat = |constants| Thermal::new(constants, parts.density, &parts.eos);
+        let porosity = porous::of(record.name, parts.density, &parts.eos);
         Material {
             name: record.name.to_owned(),
-            reference_density: parts.density,
+            reference_density: porosity
+                .as_ref()
+                .map_or(parts.density, |pores| pores.density),
             thermal: parts.thermal.map(heat),
             eos: parts.eos,
             strength: parts.strength,
             failure: parts.failure,
-            porosity: None,
+            porosity,
         }
     })
 }

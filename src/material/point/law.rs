@@ -434,6 +434,9 @@ mod tests {
                 let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
                 let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
                 // A gas, burnt or not, bears no tension that it could fail by.
+                if material.porosity.is_some() {
+                    named.insert("distension");
+                }
                 if material.burns() {
                     named.extend(["burn", "lighting_time"]);
                 } else if !matches!(material.eos, Eos::IdealGas(_)) {

@@ -115,6 +115,13 @@ macro_rules! equations_of_state {
                 /// Pressure of the reference state.
                 reference_pressure: Placed<Pressure> = "0", NotNegative;
             }
+            /// `eos.murnaghan`: Murnaghan.
+            murnaghan: MurnaghanParams => Murnaghan {
+                /// Bulk modulus.
+                bulk_modulus: Placed<Pressure>, Positive;
+                /// Its derivative by the pressure.
+                exponent: Spanned<f64>, Positive;
+            }
             /// `eos.jwl`: products of an explosive.
             jwl: JwlParams => Jwl {
                 /// Coefficient A.
@@ -355,7 +362,11 @@ macro_rules! eos_table {
     ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } $(or { $($way:tt)+ })? )+) => {
         optional_tables! {
             /// `eos`: exactly one of these.
-            EosParams { $( $(#[doc = $doc])+ $law: Option<$table>; )+ }
+            EosParams {
+                $( $(#[doc = $doc])+ $law: Option<$table>; )+
+                /// `eos.table`: a table of densities and temperatures.
+                table: Option<Spanned<TableParams>>;
+            }
         }
     };
 }
@@ -412,3 +423,15 @@ macro_rules! porosity_table {
     };
 }
 compaction_laws!(porosity_table);
+
+tables! {
+    /// `eos.table`
+    TableParams {
+        /// Path of the table, from the folder of the case.
+        file: Spanned<String>;
+        /// Temperature of the reference state.
+        reference_temperature: Option<Placed<Temperature>> = "300 K", Positive;
+        /// SHA-256 that the file must have.
+        sha256: Option<Spanned<String>>;
+    }
+}

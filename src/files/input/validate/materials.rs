@@ -1,6 +1,7 @@
 //! Materials: from the library with single values changed, or inline.
 
 use std::ops::Range;
+use std::path::Path;
 
 use toml::Spanned;
 
@@ -19,11 +20,12 @@ use material::{Eos, Material, Molten, Strength, Thermal, ThermalConstants, libra
 pub fn materials(
     params: &Named<MaterialParams>,
     dimension: usize,
+    folder: &Path,
 ) -> Result<(Vec<String>, Vec<Material>), Diagnostic> {
     let materials: Result<_, _> = params
         .0
         .iter()
-        .map(|(n, t)| material(n, t, dimension))
+        .map(|(n, t)| material(n, t, dimension, folder))
         .collect();
     let names = params.0.iter().map(|(name, _)| name.get_ref().clone());
     Ok((names.collect(), materials?))
@@ -33,6 +35,7 @@ fn material(
     name: &Spanned<String>,
     table: &Spanned<MaterialParams>,
     dimension: usize,
+    folder: &Path,
 ) -> Result<Material, Diagnostic> {
     names::check(name, "material")?;
     let params = table.get_ref();
@@ -54,7 +57,7 @@ fn material(
     let known_density = base.map_or(0.0, Material::matter_density);
     let density = params.density()?.unwrap_or(known_density);
     let eos = match (&params.eos, base.map(|b| &b.eos)) {
-        (Some(table), base) => eos(table, base, density)?,
+        (Some(table), base) => eos(table, base, density, folder)?,
         (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
     };
     let strength = match (&params.strength, base.map(|b| &b.strength)) {

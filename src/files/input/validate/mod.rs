@@ -61,7 +61,7 @@ const MOST_OVERLAP: f64 = 0.5;
 pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, mut materials) = materials::materials(&params.material, dimension)?;
+    let (names, mut materials) = materials::materials(&params.material, dimension, folder)?;
     let (sph, smoothing) = sph(&params.sph, &materials)?;
     let mut bodies = bodies::Reader {
         dimension,
