@@ -1,6 +1,6 @@
 //! An equation of state as a table of densities and temperatures, such as ANEOS makes.
 //!
-//! The text is that which SWIFT and WoMa read, in SI units: lines of comments that begin with `#`, a version,
+//! The text is that which SWIFT and its `WoMa` read, in SI units: lines of comments that begin with `#`, a version,
 //! the numbers of densities and temperatures, the densities, the temperatures, and then for each temperature,
 //! and for each density at it, specific energy, pressure, sound speed and specific entropy. Rows of zero
 //! density or temperature are left out.
@@ -32,7 +32,7 @@ use crate::declare::{Constants, Value};
 /// Largest median error of consistency of the cells, over the sum of the magnitudes of the terms.
 pub const MOST_ERROR: f64 = 0.1;
 /// Most densities, and most temperatures.
-const MOST_NODES: usize = 10_000;
+const MOST_NODES: u32 = 10_000;
 
 /// An equation of state from a table.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +87,7 @@ impl Grid {
         let mut count = |what: &str| {
             let number = next(what)?;
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the range
-            if number.fract() == 0.0 && (3.0..=MOST_NODES as f64).contains(&number) {
+            if number.fract() == 0.0 && (3.0..=f64::from(MOST_NODES)).contains(&number) {
                 Ok(number as usize)
             } else {
                 Err(format!("{what} must be a whole number from 3 to {MOST_NODES}, and is {number}"))
