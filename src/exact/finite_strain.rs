@@ -35,7 +35,7 @@ impl Medium {
     /// The medium of a material, if it is linear elastic.
     #[must_use]
     pub fn of(material: &Material) -> Option<Self> {
-        let Eos::Linear(eos) = &material.eos else {
+        let (Eos::Linear(eos), None) = (&material.eos, &material.porosity) else {
             return None;
         };
         let elastic = matches!(material.strength, Strength::None | Strength::Elastic(_));

@@ -38,19 +38,20 @@ pub struct Shock {
 /// failure are left out.
 ///
 /// For equations of state other than Mie–Grüneisen, `η = u/U` is where the jump conditions
-/// `p = p₀ + ρ₀ u²/η` and `e = e₀ + u²/2 + p₀ η/ρ₀` meet the equation of state.
+/// `p = p₀ + ρ₀ u²/η` and `e = e₀ + u²/2 + p₀ η/ρ₀` meet the equation of state. Pores crush in the shock; its elastic
+/// precursor is left out.
 #[must_use]
 pub fn shock(material: &Material, u: f64) -> Shock {
     if let Some(medium) = Medium::of(material) {
         return medium.shock(u);
     }
-    let (rho0, eos) = (material.reference_density, &material.eos);
-    let e0 = eos.reference_energy(rho0);
-    let p0 = eos.at(rho0, rho0, e0).pressure;
+    let rho0 = material.reference_density;
+    let e0 = material.eos.reference_energy(rho0);
+    let p0 = material.virgin(rho0, e0).pressure;
     let behind = |eta: f64| (rho0 / (1.0 - eta), e0 + 0.5 * u * u + p0 * eta / rho0);
     let eta = bisect(0.0, 1.0, |eta| {
         let (density, energy) = behind(eta);
-        (eos.at(rho0, density, energy).pressure - p0) * eta - rho0 * u * u
+        (material.loaded(density, energy).pressure - p0) * eta - rho0 * u * u
     });
     let (density, specific_energy) = behind(eta);
     let shock_speed = u / eta.max(f64::MIN_POSITIVE);
@@ -87,12 +88,12 @@ pub struct Impact {
 }
 
 impl Medium {
-    /// The medium of a material, if its equation of state is Mie–Grüneisen. Strength and spall
+    /// The medium of a material, if its equation of state is Mie–Grüneisen, without pores. Strength and spall
     /// are left out.
     #[must_use]
     pub fn of(material: &Material) -> Option<Self> {
         match &material.eos {
-            Eos::MieGruneisen(eos) => Some(Self {
+            Eos::MieGruneisen(eos) if material.porosity.is_none() => Some(Self {
                 reference_density: material.reference_density,
                 eos: *eos,
             }),

@@ -1,7 +1,7 @@
 //! The constants of a material by the names that the input gives them.
 
 use super::declare::{Constants, Value};
-use super::{Material, ThermalConstants};
+use super::{Material, Porosity, ThermalConstants};
 
 /// One constant.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,7 @@ impl Material {
     /// All constants of the material, each at a key of the input.
     #[must_use]
     pub fn constants(&self) -> Vec<Constant> {
-        let density = Value::Number(self.reference_density, "kg/m^3");
+        let density = Value::Number(self.matter_density(), "kg/m^3");
         let mut list = vec![constant("density", density)];
         let (law, rows) = self.eos.constants();
         list.extend(group(&format!("eos.{law}"), rows));
@@ -31,6 +31,8 @@ impl Material {
         if let Some(thermal) = &self.thermal {
             list.extend(group("thermal", heat(thermal.constants())));
         }
+        let pores = self.porosity.iter().flat_map(Porosity::constants);
+        list.extend(pores.map(|(key, value)| constant(&format!("porosity.{key}"), value)));
         list
     }
 }

@@ -11,13 +11,21 @@ pub mod constants;
 pub mod eos;
 pub mod library;
 mod point;
+mod porosity;
 mod rest;
 pub mod thermal;
 
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
-pub use eos::{Eos, EquationOfState, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
+pub use eos::{
+    Burn, Eos, EquationOfState, Grid, IdealGas, Jwl, Linear, LinearForm, MieGruneisen, Murnaghan,
+    PointResponse, Table, Tait, Tillotson, UNLIT,
+};
 pub use point::*;
+pub use porosity::{
+    Compaction, CompactionDamage, CompactionLaw, EpsilonAlpha, PAlpha, Porosity, PorousPoint,
+    Solid, StrengthOf,
+};
 pub use rest::{NEGLIGIBLE, Rest};
 pub use thermal::{Thermal, ThermalConstants};
 
@@ -33,7 +41,7 @@ pub const SOUND_SPEED_SQUARED_FLOOR: f64 = 0.01;
 pub struct Material {
     /// Name for reports.
     pub name: String,
-    /// Reference density ρ₀ (kg/m³).
+    /// Reference density ρ₀ (kg/m³), with its pores.
     pub reference_density: f64,
     /// Pressure as a function of density and specific energy.
     pub eos: Eos,
@@ -44,6 +52,8 @@ pub struct Material {
     /// Temperature as a function of density and specific energy; without it, strength stays that
     /// of the reference temperature.
     pub thermal: Option<Thermal>,
+    /// Pores, if it has any; the equation of state and heat are then those of the solid between them.
+    pub porosity: Option<Porosity>,
 }
 
 /// One call of [`Material::update`]; without `ALL`, of laws that do not follow the state.
@@ -72,7 +82,76 @@ impl Material {
     /// fluid K alone, for a gas that of its reference pressure.
     #[must_use]
     pub fn p_wave_modulus(&self) -> f64 {
-        self.eos.bulk_modulus(self.reference_density) + self.strength.shear_modulus() * (4.0 / 3.0)
+        self.bulk_modulus() + self.shear_modulus() * (4.0 / 3.0)
+    }
+
+    /// Reference bulk modulus K (Pa).
+    #[inline(always)]
+    #[must_use]
+    pub fn bulk_modulus(&self) -> f64 {
+        match &self.porosity {
+            None => self.eos.bulk_modulus(self.reference_density),
+            Some(porosity) => porosity.bulk_modulus(),
+        }
+    }
+
+    /// Reference shear modulus G (Pa).
+    #[inline(always)]
+    #[must_use]
+    pub fn shear_modulus(&self) -> f64 {
+        let shear_modulus = self.strength.shear_modulus();
+        match &self.porosity {
+            None => shear_modulus,
+            Some(porosity) => shear_modulus * porosity.shear_share(),
+        }
+    }
+
+    /// Reference density (kg/m³) of the matter between pores; without pores that of the material.
+    #[inline(always)]
+    #[must_use]
+    pub fn matter_density(&self) -> f64 {
+        let solid = |porosity: &Porosity| porosity.solid.density;
+        self.porosity.as_ref().map_or(self.reference_density, solid)
+    }
+
+    /// Pressure and derivatives of virgin matter at a density (kg/m³) and specific energy (J/kg), before
+    /// pores crush.
+    #[must_use]
+    pub fn virgin(&self, density: f64, specific_energy: f64) -> PointResponse {
+        self.porous(density, specific_energy, false).0
+    }
+
+    /// Pressure and derivatives of matter that has been compressed to a density (kg/m³) and specific energy
+    /// (J/kg) for the first time.
+    #[must_use]
+    pub fn loaded(&self, density: f64, specific_energy: f64) -> PointResponse {
+        self.porous(density, specific_energy, true).0
+    }
+
+    /// Response and distension of matter that was virgin; pores crush if `crushes`.
+    fn porous(&self, density: f64, energy: f64, crushes: bool) -> (PointResponse, f64) {
+        let Some(porosity) = &self.porosity else {
+            let mut response = self.eos.at(self.reference_density, density, energy);
+            if let Eos::Jwl(explosive) = &self.eos {
+                response.pressure = explosive.unburnt(self.reference_density, density);
+            }
+            return (response, 1.0);
+        };
+        let batch = PointBatch {
+            density: [density; LANES],
+            specific_energy: [energy; LANES],
+            ..PointBatch::ZERO
+        };
+        let [point, ..] = self.eos.porous(porosity, &batch, crushes);
+        (point.response, point.distension)
+    }
+
+    /// The distension of a particle that holds `distension`, which is zero before its first update; one
+    /// without pores.
+    #[inline(always)]
+    fn distension(&self, distension: f64) -> f64 {
+        let known = |porosity: &Porosity| porosity.known(distension);
+        self.porosity.as_ref().map_or(1.0, known)
     }
 
     /// Longitudinal sound speed √(M/ρ₀) (m/s) of matter at rest.
@@ -81,12 +160,13 @@ impl Material {
         (self.p_wave_modulus() / self.reference_density).sqrt()
     }
 
-    /// Melting temperature (K) at a density (kg/m³), if the material has any: that of its strength, or that of the thermal
-    /// constants.
+    /// Melting temperature (K) at a density (kg/m³) and distension, if the material has any: that of its strength, or
+    /// that of the thermal constants.
     #[must_use]
-    pub fn melting_temperature(&self, density: f64) -> Option<f64> {
+    pub fn melting_temperature(&self, density: f64, distension: f64) -> Option<f64> {
         let thermal = self.thermal.as_ref()?.constants();
-        let own = self.strength.melts_at(density / self.reference_density);
+        let matter = density * self.distension(distension);
+        let own = self.strength.melts_at(matter / self.matter_density());
         own.or(thermal.melting_temperature)
     }
 
@@ -103,58 +183,72 @@ impl Material {
         }
     }
 
-    /// Temperature (K) at a density (kg/m³), [thermal energy](Self::thermal_energy) (J/kg) and
-    /// damage, if the material has thermal constants.
+    /// Temperature (K) at a density (kg/m³), [thermal energy](Self::thermal_energy) (J/kg), damage and distension, if
+    /// the material has thermal constants.
     #[must_use]
-    pub fn temperature(&self, density: f64, specific_energy: f64, damage: f64) -> Option<f64> {
+    pub fn temperature(
+        &self,
+        density: f64,
+        specific_energy: f64,
+        [damage, distension]: [f64; 2],
+    ) -> Option<f64> {
         let thermal = self.thermal.as_ref()?;
-        let at = self
-            .eos
-            .at(self.reference_density, density, specific_energy);
+        let alpha = self.distension(distension);
+        let matter = density * alpha;
+        let at = self.eos.at(self.matter_density(), matter, specific_energy);
         if at.pressure >= 0.0 {
             // No tension that failure could limit.
-            return Some(thermal.temperature(density, specific_energy));
+            return Some(thermal.temperature(matter, specific_energy));
         }
+        let pressure = at.pressure / alpha;
         let mut point = PointBatch {
             density: [density; LANES],
             specific_energy: [specific_energy; LANES],
-            pressure: [at.pressure; LANES],
+            pressure: [pressure; LANES],
             damage: [damage; LANES],
             ..PointBatch::ZERO
         };
         self.failure.limit_tension(&mut point);
         let limited = point.pressure[0];
-        let matter = if limited > at.pressure {
-            self.torn_density(density, specific_energy, limited)
+        let matter = if limited > pressure {
+            self.torn_density(matter, specific_energy, limited * alpha)
         } else {
-            density
+            matter
         };
         Some(thermal.temperature(matter, specific_energy))
     }
 
     /// Density (kg/m³) of the matter between voids, whose pressure a cut-off has raised to `limited`
-    /// (Pa).
+    /// (Pa), from its density without them.
     #[inline(always)]
     fn torn_density(&self, density: f64, energy: f64, limited: f64) -> f64 {
-        let from = self.eos.linear_density(self.reference_density, density);
-        let at = self.eos.at(self.reference_density, from, energy);
+        let reference = self.matter_density();
+        let from = self.eos.linear_density(reference, density);
+        let at = self.eos.at(reference, from, energy);
         from + thermal::opening(limited - at.pressure, at.dp_drho)
     }
 
     /// Temperatures (K) of a batch whose pressure was limited from `before_failure` (Pa): that of the matter, not of
-    /// the voids in it.
+    /// the voids and pores in it.
     #[inline(always)]
     fn torn_temperatures(
         &self,
         thermal: &Thermal,
-        [density, energy]: [&Lanes; 2],
+        [density, energy, distension]: [&Lanes; 3],
         limited: &Lanes,
         before_failure: &Lanes,
     ) -> Lanes {
         let mut matter = *density;
+        let mut alpha = [1.0; LANES];
+        if self.porosity.is_some() {
+            for k in 0..LANES {
+                alpha[k] = self.distension(distension[k]);
+                matter[k] *= alpha[k];
+            }
+        }
         for k in 0..LANES {
             if limited[k] > before_failure[k] {
-                matter[k] = self.torn_density(density[k], energy[k], limited[k]);
+                matter[k] = self.torn_density(matter[k], energy[k], limited[k] * alpha[k]);
             }
         }
         thermal.temperatures(&matter, energy)
@@ -187,14 +281,28 @@ impl Material {
         thermal
     }
 
-    /// [`Self::temperature`] of a batch.
+    /// [`Self::temperature`] of a batch, of densities, thermal energies, damage and distensions.
     #[must_use]
-    pub fn temperatures(&self, density: &Lanes, energy: &Lanes, damage: &Lanes) -> Option<Lanes> {
+    pub fn temperatures(
+        &self,
+        [density, energy, damage, distension]: [&Lanes; 4],
+    ) -> Option<Lanes> {
         let thermal = self.thermal.as_ref()?;
-        let response = (self.eos).response(self.reference_density, density, energy);
-        let state = [density, energy];
-        let limited = self.limited(state, damage, &response.pressure);
-        Some(self.torn_temperatures(thermal, state, &limited, &response.pressure))
+        let before_failure = if self.porosity.is_some() {
+            let mut pressure = [0.0; LANES];
+            for k in 0..LANES {
+                let alpha = self.distension(distension[k]);
+                let at = (self.eos).at(self.matter_density(), density[k] * alpha, energy[k]);
+                pressure[k] = at.pressure / alpha;
+            }
+            pressure
+        } else {
+            let response = (self.eos).response(self.reference_density, density, energy);
+            response.pressure
+        };
+        let limited = self.limited([density, energy], damage, &before_failure);
+        let state = [density, energy, distension];
+        Some(self.torn_temperatures(thermal, state, &limited, &before_failure))
     }
 
     /// [`Self::temperatures`] of a batch right after its [update](Self::update), which has returned `before_failure`: most need
@@ -210,14 +318,14 @@ impl Material {
         let thermal = self.thermal.as_ref()?;
         let energy = self.thermal_energies(&after.specific_energy, plastic_energy);
         if energy != after.specific_energy {
-            return self.temperatures(&after.density, &energy, &after.damage);
+            return self.temperatures([&after.density, &energy, &after.damage, &after.distension]);
         }
-        let state = [&after.density, &energy];
-        if before_failure.iter().all(|&pressure| pressure >= 0.0) {
+        let state = [&after.density, &energy, &after.distension];
+        if self.porosity.is_none() && before_failure.iter().all(|&pressure| pressure >= 0.0) {
             // No tension that failure could limit.
             return Some(thermal.temperatures(state[0], state[1]));
         }
-        let limited = self.limited(state, &after.damage, before_failure);
+        let limited = self.limited([state[0], state[1]], &after.damage, before_failure);
         Some(self.torn_temperatures(thermal, state, &limited, before_failure))
     }
 
@@ -245,10 +353,12 @@ impl Material {
     pub fn energy(&self, density: f64, temperature: f64) -> Option<f64> {
         let thermal = self.thermal.as_ref()?;
         let specific_heat = thermal.constants().specific_heat;
-        let mut energy = thermal.cold_energy(density) + specific_heat * temperature;
-        // What a cut-off tears is denser than its mean, and its cold energy another.
+        let matter = density * self.distension(0.0);
+        let mut energy = thermal.cold_energy(matter) + specific_heat * temperature;
+        // What a cut-off tears is denser than its mean, and its cold energy another; and pores give way to heat.
         for _ in 0..TORN_STEPS {
-            let missed = temperature - self.temperature(density, energy, 0.0)?;
+            let (_, distension) = self.porous(density, energy, false);
+            let missed = temperature - self.temperature(density, energy, [0.0, distension])?;
             if missed.abs() <= TORN_ERROR * temperature {
                 break;
             }
@@ -268,7 +378,7 @@ impl Material {
     /// state slow down those that do not where both stand in one function.
     pub fn update(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let material = self;
-        if self.strength.follows_state() || self.failure.follows_state() {
+        if self.follows_state() {
             instructions().run(Update::<true> {
                 material,
                 batch,
@@ -283,6 +393,14 @@ impl Material {
         }
     }
 
+    /// True if a law follows the state.
+    fn follows_state(&self) -> bool {
+        self.strength.follows_state()
+            || self.failure.follows_state()
+            || self.porosity.is_some()
+            || self.burns()
+    }
+
     /// All laws in their order; without `ALL`, only those that do not follow the state.
     #[inline(always)]
     fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
@@ -290,19 +408,37 @@ impl Material {
         if ALL && self.failure.follows_state() {
             point::limit_expansion(batch, rho0);
         }
-        let response = self
-            .eos
-            .response(rho0, &batch.density, &batch.specific_energy);
+        let before = [batch.distension, batch.compaction];
+        let (response, shares) = match (&self.porosity, &self.eos) {
+            (Some(porosity), _) if ALL => porosity.respond(&self.eos, batch, dt != 0.0),
+            (_, Eos::Jwl(explosive)) if ALL => (self.burn(explosive, batch, dt), [1.0; LANES]),
+            _ => {
+                let response = (self.eos).response(rho0, &batch.density, &batch.specific_energy);
+                (response, [1.0; LANES])
+            }
+        };
         batch.pressure = response.pressure;
         self.failure.limit_tension(batch);
-        let moduli = [self.strength.shear_modulus(), self.eos.bulk_modulus(rho0)];
+        let moduli = [self.strength.shear_modulus(), self.bulk_modulus()];
         let mut now = Conditions::new(dt, rho0, moduli);
         now.options = self.failure.options;
+        if ALL && let Some(porosity) = &self.porosity {
+            now.reference_shear_modulus = self.shear_modulus();
+            for k in 0..LANES {
+                now.packing[k] = batch.distension[k] / porosity.distension;
+                now.crushing[k] = porosity.damage(before[1][k], batch.compaction[k]);
+            }
+        }
         if ALL && self.needs_temperature() {
             self.set_temperatures(batch, &response, &mut now);
         }
         let strain = batch.plastic_strain;
-        self.strength.act::<ALL>(batch, &mut now, &self.failure);
+        match &self.porosity {
+            Some(porosity) if ALL && porosity.strength == StrengthOf::Matrix => {
+                self.act_in_matrix(batch, &mut now, (&before[0], &shares));
+            }
+            _ => self.strength.act::<ALL>(batch, &mut now, &self.failure),
+        }
         if ALL && self.failure.follows_state() {
             for k in 0..LANES {
                 now.plastic_increment[k] = batch.plastic_strain[k] - strain[k];
@@ -310,11 +446,69 @@ impl Material {
             if self.failure.asks_hardening() {
                 self.set_hardening(batch, &mut now);
             }
-            let bulk_modulus = self.bulk_modulus(batch, &response);
+            let bulk_modulus = self.bulk_modulus_of(batch, &response);
             self.failure.fail(batch, &mut now, &bulk_modulus);
         }
         self.set_sound_speed(batch, &response, &now.shear_modulus);
         response.pressure
+    }
+
+    /// True if it is an explosive.
+    #[must_use]
+    pub fn burns(&self) -> bool {
+        matches!(self.eos, Eos::Jwl(_))
+    }
+
+    /// Burns a batch for a step (s).
+    fn burn(&self, explosive: &Jwl, batch: &mut PointBatch, dt: f64) -> eos::Response {
+        let mut now = Conditions::new(dt, self.reference_density, [0.0; 2]);
+        now.options = self.failure.options;
+        let mut sizes = [0.0; LANES];
+        for k in 0..LANES {
+            sizes[k] = now.size(batch, k);
+        }
+        explosive.burn_batch(self.reference_density, batch, dt, &sizes)
+    }
+
+    /// Strength of the matter between pores, whose stress is α times that of the whole, and whose strain is a share of that
+    /// of the whole, from the distensions before the step.
+    #[inline(never)]
+    fn act_in_matrix(
+        &self,
+        batch: &mut PointBatch,
+        now: &mut Conditions,
+        (before, shares): (&Lanes, &Lanes),
+    ) {
+        let (stress, gradient) = (batch.deviatoric_stress, batch.velocity_gradient);
+        let pressure = batch.pressure;
+        for k in 0..LANES {
+            let alpha = self.distension(before[k]);
+            for component in &mut batch.deviatoric_stress {
+                component[k] *= alpha;
+            }
+            batch.pressure[k] *= batch.distension[k];
+            for row in 0..3 {
+                for column in 0..3 {
+                    let (here, across) =
+                        (gradient[3 * row + column][k], gradient[3 * column + row][k]);
+                    let (strain, spin) = (0.5 * (here + across), 0.5 * (here - across));
+                    batch.velocity_gradient[3 * row + column][k] = shares[k] * strain + spin;
+                }
+            }
+        }
+        self.strength.act::<true>(batch, now, &self.failure);
+        batch.velocity_gradient = gradient;
+        batch.pressure = pressure;
+        for k in 0..LANES {
+            let share = 1.0 / batch.distension[k];
+            now.shear_modulus[k] *= share;
+            for component in &mut batch.deviatoric_stress {
+                component[k] *= share;
+            }
+        }
+        if now.dt == 0.0 {
+            batch.deviatoric_stress = stress;
+        }
     }
 
     /// True if a law follows the temperature.
@@ -326,7 +520,9 @@ impl Material {
     /// True if a law asks who and how large a particle is, or what plastic work it has taken.
     #[must_use]
     pub fn needs_particle(&self) -> bool {
-        self.failure.asks_identity() || self.needs_temperature() && self.stored_share() > 0.0
+        self.failure.asks_identity()
+            || self.needs_temperature() && self.stored_share() > 0.0
+            || self.burns()
     }
 
     /// True if a law needs the melting temperature of the thermal constants.
@@ -340,13 +536,13 @@ impl Material {
         if let Some(thermal) = &self.thermal {
             let rho = &batch.density;
             let e = self.thermal_energies(&batch.specific_energy, &batch.plastic_energy);
-            let state = [rho, &e];
+            let state = [rho, &e, &batch.distension];
             now.temperature =
                 self.torn_temperatures(thermal, state, &batch.pressure, &response.pressure);
             now.thermal = *thermal.constants();
             if self.failure.has_memory() && now.options.molten != Some(Molten::Holds) {
                 for k in 0..LANES {
-                    let melting = self.melting_temperature(batch.density[k]);
+                    let melting = self.melting_temperature(batch.density[k], batch.distension[k]);
                     now.melting[k] = melting.unwrap_or(f64::INFINITY);
                 }
             }
@@ -369,7 +565,7 @@ impl Material {
 
     /// Bulk modulus (Pa) of the state, `ρ ∂p/∂ρ|ₛ`.
     #[inline(always)]
-    fn bulk_modulus(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
+    fn bulk_modulus_of(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
         let mut modulus = self.bulk_speed_squared(batch, response);
         for k in 0..LANES {
             modulus[k] *= batch.density[k];
@@ -400,8 +596,7 @@ impl Material {
     /// that of the recompression to come.
     #[inline(always)]
     fn bulk_speed_squared(&self, batch: &PointBatch, response: &eos::Response) -> Lanes {
-        let floor = SOUND_SPEED_SQUARED_FLOOR * self.eos.bulk_modulus(self.reference_density)
-            / self.reference_density;
+        let floor = SOUND_SPEED_SQUARED_FLOOR * self.bulk_modulus() / self.reference_density;
         let mut bulk = [0.0; LANES];
         for k in 0..LANES {
             let volume = 1.0 / batch.density[k];

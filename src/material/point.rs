@@ -45,8 +45,8 @@ pub use von_mises::VonMises;
 
 /// Passes the fields of a material point to the macro `$then`, after `$more`: name, kind and role
 /// of each. `Given` is taken from the particle, `State` is taken and written back, and `Answer` is
-/// written back. `Memory` is state of failure: the same as `State` where a material of the case
-/// has a law that changes it, zero elsewhere. `Known` is given where a material of the case has a
+/// written back. `Memory` is state of failure, of pores or of burning: the same as `State` where a material of the
+/// case has a law that changes it, zero elsewhere. `Known` is given where a material of the case has a
 /// law that asks for it.
 #[macro_export]
 macro_rules! point_fields {
@@ -75,6 +75,14 @@ macro_rules! point_fields {
             first_flaw: Scalar, Memory;
             /// Strain at which the next flaw becomes active; zero if none has been drawn.
             next_flaw: Scalar, Memory;
+            /// How far pores have been crushed, along the crush curve; one without pores.
+            compaction: Scalar, Memory;
+            /// Distension; zero before the first update, and of matter without pores.
+            distension: Scalar, Memory;
+            /// Share of an explosive that has burnt.
+            burn: Scalar, Memory;
+            /// Time until a detonation lights an explosive, negative since (s).
+            lighting_time: Scalar, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).

@@ -36,12 +36,13 @@ impl Rest {
         })
     }
 
-    /// True if matter of this density (kg/m³), specific energy (J/kg) and deviatoric stress (Pa) is in it.
+    /// True if matter of this density (kg/m³), specific energy (J/kg), compaction and deviatoric stress (Pa) is in it.
     #[inline(always)]
     #[must_use]
-    pub fn holds(&self, density: f64, energy: f64, deviator: &[f64; 6]) -> bool {
+    pub fn holds(&self, density: f64, energy: f64, compaction: f64, deviator: &[f64; 6]) -> bool {
         density.to_bits() == self.density.to_bits()
             && energy.abs() < self.energy
+            && compaction == 0.0
             && *deviator == [0.0; 6]
     }
 }
@@ -56,9 +57,10 @@ mod tests {
         let metal = library::find("aluminium-2024").unwrap();
         let rest = Rest::of(&metal).unwrap();
         let (density, free) = (metal.reference_density, [0.0; 6]);
-        assert!(rest.holds(density, 0.0, &free) && rest.holds(density, -1e-9, &free));
-        assert!(!rest.holds(density.next_up(), 0.0, &free));
-        assert!(!rest.holds(density, 1e-3 * density, &free));
-        assert!(!rest.holds(density, 0.0, &[0.0, 0.0, 0.0, 0.0, 1e-9, 0.0]));
+        assert!(rest.holds(density, 0.0, 0.0, &free) && rest.holds(density, -1e-9, 0.0, &free));
+        assert!(!rest.holds(density.next_up(), 0.0, 0.0, &free));
+        assert!(!rest.holds(density, 1e-3 * density, 0.0, &free));
+        assert!(!rest.holds(density, 0.0, 0.5, &free));
+        assert!(!rest.holds(density, 0.0, 0.0, &[0.0, 0.0, 0.0, 0.0, 1e-9, 0.0]));
     }
 }

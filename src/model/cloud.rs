@@ -58,6 +58,10 @@ quantities! {
     Damage = "damage", 1, [0; 5];
     /// Elastic energy that was held when the material failed (J/kg).
     FailureEnergy = "failure_energy", 1, [2, 0, -2, 0, 0];
+    /// How far pores have been crushed.
+    Compaction = "compaction", 1, [0; 5];
+    /// Share of an explosive that has burnt.
+    Burn = "burn", 1, [0; 5];
     /// Elastic displacement that no linear field explains (m).
     HourglassDisplacement = "hourglass_displacement", 3, [1, 0, 0, 0, 0];
 }

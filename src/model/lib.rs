@@ -49,7 +49,7 @@ pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
-pub use load::{Loads, VelocityLoad};
+pub use load::{Detonator, Loads, VelocityLoad};
 pub use measure::{
     Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,
 };
@@ -185,6 +185,20 @@ impl Case {
     pub fn may_fail(&self) -> bool {
         let mut bodies = self.bodies.iter();
         bodies.any(|body| self.materials[body.material].failure.has_memory())
+    }
+
+    /// `true` if a material of the case has pores.
+    #[must_use]
+    pub fn is_porous(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].porosity.is_some())
+    }
+
+    /// `true` if a material of the case is an explosive.
+    #[must_use]
+    pub fn is_explosive(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].burns())
     }
 
     /// `true` if failure of a material of the case changes this field.

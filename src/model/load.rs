@@ -1,6 +1,7 @@
 //! External loads on bodies: gravity, prescribed velocities, absorbing zones, rigid surfaces.
 
-use super::{Absorber, Motion, Region, RigidSurface};
+use super::{Absorber, Case, Motion, Region, RigidSurface, Vec3};
+use material::{Eos, UNLIT};
 
 /// All loads of a case.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,6 +14,19 @@ pub struct Loads {
     pub absorbers: Vec<Absorber>,
     /// Rigid planes and other surfaces.
     pub surfaces: Vec<RigidSurface>,
+    /// Points from which detonations run.
+    pub detonators: Vec<Detonator>,
+}
+
+/// A point from which a detonation runs through explosives, straight and at their own speeds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detonator {
+    /// Index into [`super::Case::bodies`] of the one that it lights; all explosives without.
+    pub body: Option<usize>,
+    /// The point (m).
+    pub at: Vec3,
+    /// When it lights (s).
+    pub time: f64,
 }
 
 impl Loads {
@@ -46,4 +60,21 @@ pub struct VelocityLoad {
     /// The particles are free from the step boundary nearest to this time on (s); may be
     /// infinite.
     pub until: f64,
+}
+
+impl Case {
+    /// When the first detonation reaches a place (m) of a body (s); zero if it is no explosive.
+    #[must_use]
+    pub fn lighting_time(&self, body: usize, position: &Vec3) -> f64 {
+        let Eos::Jwl(explosive) = &self.materials[self.bodies[body].material].eos else {
+            return 0.0;
+        };
+        let reaches = |detonator: &Detonator| {
+            let lights = detonator.body.is_none_or(|lit| lit == body);
+            let way = (position - detonator.at).norm();
+            lights.then(|| detonator.time + way / explosive.detonation_velocity)
+        };
+        let all = self.loads.detonators.iter().filter_map(reaches);
+        all.fold(UNLIT, f64::min)
+    }
 }

@@ -53,7 +53,7 @@ impl MeasureOptions {
     /// The pressure (Pa) beyond which a shock has arrived in a material.
     #[must_use]
     pub fn arrival_of(&self, material: &Material) -> f64 {
-        let modulus = || material.eos.bulk_modulus(material.reference_density);
+        let modulus = || material.bulk_modulus();
         self.arrival_pressure.unwrap_or_else(|| ARRIVED * modulus())
     }
 }

@@ -184,6 +184,10 @@ macro_rules! owners {
                 const LOCALISED = 1 << 25;
                 /// The conventional form of the sums.
                 const CONVENTIONAL = 1 << 26;
+                /// Materials with pores.
+                const POROUS = 1 << 27;
+                /// Explosives.
+                const EXPLOSIVE = 1 << 28;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

@@ -132,6 +132,14 @@ particle_fields! {
     first_flaw: Scalar,                   "",       State,    -,              Never,    FLAWS;
     /// Strain at which the next flaw becomes active; zero if none has been drawn.
     next_flaw: Scalar,                    "",       State,    -,              Never,    FLAWS;
+    /// How far pores have been crushed, along the crush curve; one without pores.
+    compaction: Scalar,                   "",       State,    -,              IfHeld,   POROUS;
+    /// Distension: density of the matter between pores over the density; zero for materials without porosity.
+    distension: Scalar,                   "",       State,    -,              OnDemand, POROUS;
+    /// Share of an explosive that has burnt.
+    burn: Scalar,                         "",       State,    -,              IfHeld,   EXPLOSIVE;
+    /// Time until a detonation lights it, negative since; zero for what is no explosive.
+    lighting_time: Scalar,                "s",      State,    -,              OnDemand, EXPLOSIVE;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

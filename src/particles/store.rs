@@ -23,7 +23,8 @@ impl ParticleStore {
         let held = |field: &[f64]| field.get(i).copied().unwrap_or_default();
         let work = held(&self.plastic_energy);
         let energy = material.thermal_energy(self.specific_energy[i], work);
-        material.temperature(self.density[i], energy, held(&self.damage))
+        let state = [held(&self.damage), held(&self.distension)];
+        material.temperature(self.density[i], energy, state)
     }
 
     /// Number of halo particles.

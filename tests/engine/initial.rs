@@ -59,7 +59,7 @@ fn each_particle_begins_as_its_formula_says() {
         same(v[2], -3e3 * (1.0 - r * r / 25e-6), 3e3);
         assert_eq!(v, s.particles.predicted_velocity[i]);
         let (rho, e) = (s.particles.density[i], s.particles.specific_energy[i]);
-        let temperature = material.temperature(rho, e, 0.0).unwrap();
+        let temperature = material.temperature(rho, e, [0.0, 0.0]).unwrap();
         same(temperature, 293.15 + 2e4 * x[2], 400.0);
         let strain = if x[2] > 3e-3 { 0.1 } else { 0.0 };
         same(s.particles.plastic_strain[i], strain, 1.0);
@@ -110,7 +110,7 @@ fn a_temperature_is_an_energy_with_its_pressure() {
     let s = start(free);
     for (i, _) in places(&s) {
         let (rho, e) = (s.particles.density[i], s.particles.specific_energy[i]);
-        let found = material.temperature(rho, e, 0.0).unwrap();
+        let found = material.temperature(rho, e, [0.0, 0.0]).unwrap();
         assert!((found - 600.0).abs() < 1e-9, "{found}");
     }
 }
@@ -128,7 +128,7 @@ fn torn_matter_has_the_temperature_that_it_is_given() {
     let material = &case.materials[body.material];
     let (rho, e) = (case.initial_density(body), case.initial_energy(body));
     assert!(material.eos.at(8930.0, rho, e).pressure < -2e9);
-    let found = material.temperature(rho, e, 0.0).unwrap();
+    let found = material.temperature(rho, e, [0.0, 0.0]).unwrap();
     assert!((found - 500.0).abs() < 1e-9, "{found}");
 }
 

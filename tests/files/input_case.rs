@@ -420,7 +420,14 @@ fn a_gas_a_liquid_a_rubber_and_a_hot_metal() {
     assert!((law.shear_modulus - 47.7e9).abs() < 1.0 && (law.reference_rate - 1.0).abs() < 1e-15);
     let thermal = case.materials[3].thermal.as_ref().unwrap().constants();
     assert!((thermal.reference_temperature - 300.0).abs() < 1e-12);
-    assert!((case.materials[3].temperature(8930.0, 38300.0, 0.0).unwrap() - 400.0).abs() < 1e-9);
+    assert!(
+        (case.materials[3]
+            .temperature(8930.0, 38300.0, [0.0, 0.0])
+            .unwrap()
+            - 400.0)
+            .abs()
+            < 1e-9
+    );
     let again = parse("resolved", &case.resolved, &[]).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(meaning(&again), meaning(&case));
 }
@@ -609,4 +616,33 @@ fn checkpoints_may_come_by_what_they_cost() {
     let day = "output.mean_time_between_failures=24 h";
     let failures = 24.0 * 3600.0;
     assert_eq!(every(&[&auto, day]), Some(ClockInterval::Auto { failures }));
+}
+
+/// The resolved text of a case with a table of states names the file from everywhere, with its digest; a file that has changed
+/// since is refused.
+#[test]
+fn a_table_of_states_is_that_with_which_the_case_began() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = std::fs::read(crate::project::root().join("tests/common/gas.table")).unwrap();
+    std::fs::write(folder.path().join("gas.table"), &table).unwrap();
+    let text = "dimension = 1\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+        [material.gas]\ndensity = \"1 kg/m^3\"\neos.table.file = \"gas.table\"\nstrength = \"none\"\n\
+        [[body]]\nname = \"gas\"\nmaterial = \"gas\"\nshape.box = { lower = [0], upper = [\"9 mm\"] }\n";
+    let path = folder.path().join("case.toml");
+    std::fs::write(&path, text).unwrap();
+    let case = files::input::load(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let energy = case.initial_energy(&case.bodies[0]);
+    assert!((energy / (717.63 * 300.0) - 1.0).abs() < 1e-12, "{energy}");
+    assert!(case.resolved.contains("sha256"), "{}", case.resolved);
+    let again = files::input::parse("resolved.toml", &case.resolved, &[]);
+    assert_eq!(
+        again.unwrap_or_else(|error| panic!("{error}")).materials,
+        case.materials
+    );
+    let mut changed = table;
+    changed.push(b'\n');
+    std::fs::write(folder.path().join("gas.table"), changed).unwrap();
+    let refused = files::input::parse("resolved.toml", &case.resolved, &[]);
+    let message = refused.expect_err("another file").to_string();
+    assert!(message.contains("no longer the one"), "{message}");
 }

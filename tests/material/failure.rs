@@ -445,7 +445,7 @@ fn matter_melts_where_its_strength_says() {
     let Strength::SteinbergGuinan(law) = metal.strength.clone() else {
         panic!("of Steinberg and Guinan")
     };
-    let melting = metal.melting_temperature(0.95 * rho).unwrap();
+    let melting = metal.melting_temperature(0.95 * rho, 0.0).unwrap();
     assert_eq!(melting, law.melting_temperature(0.95));
     metal.failure.spall = Some(Spall {
         pressure: -1e12,

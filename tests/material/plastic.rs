@@ -72,7 +72,7 @@ fn the_return_finds_its_root_whatever_the_increment() {
             for dt in [1e-10, 1e-6, 1.0, 1e4] {
                 for energy in [0.0, 2e5] {
                     let metal = metal(Strength::JohnsonCook(JC));
-                    let t = metal.temperature(RHO, energy, 0.0).unwrap();
+                    let t = metal.temperature(RHO, energy, [0.0, 0.0]).unwrap();
                     let start = JC.flow_stress(before, 0.0, t, &CONSTANTS) * (1.0 + overshoot);
                     let mut points = batch(RHO, energy);
                     points.plastic_strain = [before; LANES];
@@ -167,7 +167,7 @@ fn steinberg_guinan_stiffens_hardens_saturates_and_melts() {
         let (p, c) = sound(rho, e);
         let mut bare = batch(rho, e);
         fluid.update(&mut bare, 0.0);
-        let t = metal.temperature(rho, e, 0.0).unwrap();
+        let t = metal.temperature(rho, e, [0.0, 0.0]).unwrap();
         let g = 27.6e9 * (1.0 + 6.52e-11 * p / ratio.cbrt() - 6.16e-4 * (t - 300.0));
         let shear = 0.75 * rho * (c * c - bare.sound_speed[0].powi(2));
         assert!((shear / g - 1.0).abs() < 1e-9, "{ratio} {e}: {shear} {g}");
@@ -233,7 +233,7 @@ fn plastic_work_heats_and_softens() {
         points.specific_energy = [points.specific_energy[0] + power * dt; LANES];
     }
     let t = metal
-        .temperature(RHO, points.specific_energy[0], 0.0)
+        .temperature(RHO, points.specific_energy[0], [0.0, 0.0])
         .unwrap();
     assert!((t - 300.0 - points.specific_energy[0] / 875.0).abs() < 1e-9);
     let cold = JC.flow_stress(points.plastic_strain[0], rate, 300.0, &CONSTANTS);
@@ -275,7 +275,7 @@ fn spalled_metal_keeps_the_temperature_of_its_matter() {
         after: AfterSpall::Hold,
     });
     // Warm metal that opens at constant energy: the voids hold none of it.
-    let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, 0.0).unwrap();
+    let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, [0.0, 0.0]).unwrap();
     let first = at(0.97);
     for ratio in [0.9, 0.6, 0.2, 1e-3] {
         assert!((at(ratio) - first).abs() < 1e-6, "{ratio}: {}", at(ratio));
@@ -285,7 +285,7 @@ fn spalled_metal_keeps_the_temperature_of_its_matter() {
         pressure: -1.2e9,
         after: AfterSpall::Failed,
     });
-    let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, 1.0).unwrap();
+    let at = |ratio: f64| metal.temperature(RHO * ratio, 1e5, [1.0, 0.0]).unwrap();
     for ratio in [0.9, 0.6, 0.2, 1e-3] {
         assert!(
             (at(ratio) - at(0.97)).abs() < 1e-6,

@@ -20,6 +20,7 @@ fn material(strength: Strength) -> Material {
         strength,
         failure: Failure::NONE,
         thermal: None,
+        porosity: None,
     }
 }
 

@@ -16,6 +16,7 @@ pub fn material(reference_density: f64, eos: Eos, strength: Strength) -> Materia
         strength,
         failure: Failure::NONE,
         thermal: None,
+        porosity: None,
     }
 }
 

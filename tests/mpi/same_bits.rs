@@ -290,6 +290,67 @@ fn failure_on_any_ranks_and_through_restarts() {
     });
 }
 
+/// Pores that crush, by both laws, with strength of the matrix and damage: the same on any ranks, and through restarts
+/// while they crush.
+#[test]
+#[ignore = "slow"]
+fn pores_crush_alike_on_any_ranks_and_through_restarts() {
+    let strength = "material.aluminium.strength={ von_mises = { shear_modulus = \"28.6 GPa\", yield_stress = \"0.26 GPa\" } }";
+    let failure = "material.aluminium.failure.spall.pressure=\"-0.5 GPa\"";
+    let laws = [
+        "p_alpha = { elastic_pressure = \"80 MPa\", solid_pressure = \"7 GPa\", sound_speed = \"4 km/s\" }",
+        "epsilon_alpha = { transition_strain = -0.2, kappa = 0.98, sound_speed = \"4 km/s\" }",
+    ];
+    each(&laws, |law| {
+        let (_keep, at) = folder();
+        let mut case = half_the_time();
+        let pores = format!(
+            "material.aluminium.porosity={{ porosity = 0.25, strength = \"matrix\", damage = \"crushed\", {law} }}"
+        );
+        let shown =
+            "output.fields=[\"compaction\", \"distension\", \"deviatoric_stress\", \"damage\"]";
+        for set in [&*pores, strength, failure, shown] {
+            case.extend(["--set", set]);
+        }
+        let one = at("one");
+        run(1, 2, &case, &[], &one);
+        for ranks in [2, 5] {
+            let other = at(&format!("{ranks}"));
+            run(ranks, 1, &case, &[], &other);
+            assert_same(&one, &other, &format!("{law} on {ranks} ranks"));
+        }
+        let stops = ["0.03us", "0.06us"];
+        assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+    });
+}
+
+/// A charge of TNT on a plate, lit at its top: burnt shares and lighting times on any ranks, and through restarts while the
+/// detonation runs.
+#[test]
+#[ignore = "slow"]
+fn a_charge_burns_alike_on_any_ranks_and_through_restarts() {
+    let (_keep, at) = folder();
+    let mut case = half_the_time();
+    for set in [
+        "material.charge={ library = \"tnt\" }",
+        "body.sphere.material=charge",
+        "body.sphere.velocity=[0, 0, 0]",
+        "detonate=[{ at = [0, 0, \"0.8 mm\"] }]",
+        "output.fields=[\"burn\", \"lighting_time\", \"specific_energy\"]",
+    ] {
+        case.extend(["--set", set]);
+    }
+    let one = at("one");
+    run(1, 2, &case, &[], &one);
+    for ranks in [2, 5] {
+        let other = at(&format!("{ranks}"));
+        run(ranks, 1, &case, &[], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks"));
+    }
+    let stops = ["0.03us", "0.06us"];
+    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+}
+
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
 /// plate pass; measures of a plate, its debris, regions, a front and a bar: every table on any ranks and through restarts between their rows.
 #[test]

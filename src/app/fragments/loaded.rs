@@ -299,11 +299,19 @@ fn temperatures(
     } else {
         vec![0.0; body.len()]
     };
+    if case.is_porous() && !reader.has("distension") {
+        return unknown("the snapshot has neither them nor `distension`".into());
+    }
+    let distension = if case.is_porous() {
+        reader.field("distension", 1)?
+    } else {
+        vec![0.0; body.len()]
+    };
     let of = |i: usize| {
         let body = case.bodies.get(body[i] as usize)?;
         let material = case.materials.get(body.material)?;
         let energy = material.thermal_energy(energy[i], work[i]);
-        material.temperature(density[i], energy, damage[i])
+        material.temperature(density[i], energy, [damage[i], distension[i]])
     };
     let values = (0..body.len()).map(|i| of(i).unwrap_or(f64::NAN));
     Ok((values.collect(), None))

@@ -91,8 +91,8 @@ impl Absorption {
             Zone {
                 body: u32::try_from(absorber.body).unwrap_or(u32::MAX),
                 density: case.initial_density(body),
-                stiffness: material.eos.bulk_modulus(density) / density,
-                shear_modulus: material.strength.shear_modulus(),
+                stiffness: material.bulk_modulus() / density,
+                shear_modulus: material.shear_modulus(),
             }
         });
         let zones: Vec<Zone> = zones.collect();

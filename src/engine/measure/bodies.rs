@@ -101,7 +101,8 @@ impl Part {
         let damage = particles.damage.get(i).copied().unwrap_or_default();
         let work = particles.plastic_energy.get(i).copied();
         let material = &case.materials[case.bodies[particles.body[i] as usize].material];
-        let melting = material.melting_temperature(density);
+        let distension = particles.distension.get(i).copied().unwrap_or_default();
+        let melting = material.melting_temperature(density, distension);
         let molten = melting.is_some_and(|melting| temperature >= melting);
         let (turn, speed) = (cross(x, v), norm(v));
         let mass_if = |yes: bool| if yes { thermal } else { 0.0 };

@@ -240,6 +240,7 @@ pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &
             lanes(&particles.specific_energy),
             lanes(&particles.plastic_energy),
             lanes(&particles.damage),
+            lanes(&particles.distension),
         ];
         let temperatures = match last {
             Some((known, its, temperatures)) if known == material(first) && its == state => {
@@ -247,9 +248,9 @@ pub fn temperatures(case: &Case, particles: &ParticleStore, first: usize, all: &
             }
             _ => {
                 let material = &case.materials[material(first)];
-                let [density, energy, work, damage] = &state;
+                let [density, energy, work, damage, distension] = &state;
                 let energy = material.thermal_energies(energy, work);
-                let temperatures = material.temperatures(density, &energy, damage);
+                let temperatures = material.temperatures([density, &energy, damage, distension]);
                 temperatures.unwrap_or([f64::NEG_INFINITY; LANES])
             }
         };

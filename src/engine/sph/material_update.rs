@@ -238,7 +238,7 @@ impl<'a> MaterialUpdate<'a> {
             let updated = Updated {
                 before: &before,
                 after: &after,
-                shear_modulus: self.materials[own].strength.shear_modulus(),
+                shear_modulus: self.materials[own].shear_modulus(),
                 yield_stress: self.materials[own].strength.yield_stress(),
                 limits_tension: self.materials[own].failure.spall.is_some(),
                 lanes,

@@ -36,9 +36,11 @@ impl Resting {
     pub fn holds(&self, particles: &ParticleStore, i: usize) -> bool {
         let hourglass = particles.hourglass_displacement.get(i);
         let damage = particles.damage.get(i).copied().unwrap_or_default();
+        let compaction = particles.compaction.get(i).copied().unwrap_or_default();
         self.alone
             && self.states[particles.body[i] as usize].is_some_and(|rest| {
-                rest.holds(particles.density[i], 0.0, &particles.deviatoric_stress[i])
+                let stress = &particles.deviatoric_stress[i];
+                rest.holds(particles.density[i], 0.0, compaction, stress)
             })
             && [
                 particles.specific_energy[i],
@@ -71,9 +73,8 @@ pub(super) fn finish(
     for k in 0..LANES {
         let state = || {
             let deviator = before.deviatoric_stress.map(|s| s[k]);
-            rest(k).is_some_and(|rest| {
-                rest.holds(before.density[k], before.specific_energy[k], &deviator)
-            })
+            let (density, energy) = (before.density[k], before.specific_energy[k]);
+            rest(k).is_some_and(|rest| rest.holds(density, energy, before.compaction[k], &deviator))
         };
         if size[k] * dt < NEGLIGIBLE && state() {
             still |= 1 << k;

@@ -25,6 +25,8 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::LOCALISED, localises),
         (Owner::TOTAL, case.bodies.iter().any(|body| body.total)),
         (Owner::FLAWS, case.fails_with("flaws")),
+        (Owner::POROUS, case.is_porous()),
+        (Owner::EXPLOSIVE, case.is_explosive()),
         (Owner::YIELD, case.may_yield()),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),

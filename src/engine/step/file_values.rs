@@ -19,6 +19,8 @@ pub fn set_from_file(body: &Body, particles: &mut ParticleStore, i: usize, index
     for (quantity, values) in [
         (Quantity::Damage, &mut particles.damage),
         (Quantity::FailureEnergy, &mut particles.failure_energy),
+        (Quantity::Compaction, &mut particles.compaction),
+        (Quantity::Burn, &mut particles.burn),
     ] {
         // Not every case has use for them.
         if let (Some(&[given]), Some(value)) = (cloud.get(quantity, row), values.get_mut(i)) {

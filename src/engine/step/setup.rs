@@ -103,6 +103,9 @@ impl Filling<'_> {
                 if loads.absorb() {
                     particles.absorption[i] = Absorption::rate(case, b, &site.position);
                 }
+                if let Some(time) = particles.lighting_time.get_mut(i) {
+                    *time = case.lighting_time(b, &site.position.into());
+                }
                 self.next += 1;
             }
             self.first_id = beyond(self.first_id, populate::index_end(body, case.dimension))?;
@@ -129,6 +132,9 @@ impl Filling<'_> {
                 particles.stress_mass[i] = start.mass * site.share;
                 if loads.absorb() {
                     particles.absorption[i] = Absorption::rate(case, b, &site.position);
+                }
+                if let Some(time) = particles.lighting_time.get_mut(i) {
+                    *time = case.lighting_time(b, &site.position.into());
                 }
                 self.next += 1;
             }

@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use super::source::Diagnostic;
 use super::triangles::{Format, absolute};
+use material::Eos;
 use model::{Case, SurfaceFile};
 
 /// The resolved text of a case from a folder with the absolute paths of its files of triangles and of
@@ -13,7 +14,15 @@ use model::{Case, SurfaceFile};
 pub fn with_files(resolved: String, folder: &Path, case: &Case) -> Result<String, Diagnostic> {
     let meshes = case.meshes().into_iter();
     let files: Vec<&SurfaceFile> = meshes.filter_map(|(_, mesh)| mesh.file()).collect();
-    if files.is_empty() && case.bodies.iter().all(|body| body.cloud().is_none()) {
+    let tables = || {
+        case.materials
+            .iter()
+            .filter(|m| matches!(m.eos, Eos::Table(_)))
+    };
+    if files.is_empty()
+        && case.bodies.iter().all(|body| body.cloud().is_none())
+        && tables().next().is_none()
+    {
         return Ok(resolved);
     }
     let failed = |cause: String| Diagnostic::new(0..0, cause);
@@ -40,6 +49,18 @@ pub fn with_files(resolved: String, folder: &Path, case: &Case) -> Result<String
         let particles = table.get_mut("particles").and_then(Value::as_table_mut);
         if let (Some(particles), Some((cloud, _))) = (particles, body.cloud()) {
             state(particles, &cloud.file);
+        }
+    }
+    for material in tables() {
+        let own = document
+            .get_mut("material")
+            .and_then(|all| all.get_mut(&material.name))
+            .and_then(|own| own.get_mut("eos"))
+            .and_then(|eos| eos.get_mut("table"))
+            .and_then(Value::as_table_mut);
+        if let (Some(table), Eos::Table(law)) = (own, &material.eos) {
+            let [path, sha256] = law.file.clone();
+            state(table, &SurfaceFile { path, sha256 });
         }
     }
     toml::to_string(&document).map_err(|e| failed(e.to_string()))

@@ -83,6 +83,9 @@ tables! {
         /// Prescribed velocities.
         #[serde(default)]
         load: Vec<Spanned<LoadParams>>;
+        /// Points from which detonations run.
+        #[serde(default)]
+        detonate: Vec<Spanned<DetonateParams>>;
         /// Absorbing zones.
         #[serde(default)]
         absorb: Vec<Spanned<AbsorbParams>>;
@@ -227,6 +230,16 @@ tables! {
         body: Spanned<String>;
         /// Where to move: `"-z"`.
         direction: Spanned<Direction>;
+    }
+
+    /// `[[detonate]]`
+    DetonateParams {
+        /// The point.
+        at: Spanned<Vec<Placed<Length>>>;
+        /// When it lights.
+        time: Option<Placed<Time>> = "0", NotNegative;
+        /// The body that it lights.
+        body: Option<Spanned<String>> => "all explosives";
     }
 
     /// `[[symmetry]]`

@@ -221,8 +221,7 @@ fn beyond(eos: &Eos, ratio: f64) -> Option<&'static str> {
 }
 
 fn sound_speed(material: &Material) -> f64 {
-    let rho = material.reference_density;
-    (material.eos.bulk_modulus(rho) / rho).sqrt()
+    (material.bulk_modulus() / material.reference_density).sqrt()
 }
 
 fn impedance(material: &Material) -> f64 {

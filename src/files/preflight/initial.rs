@@ -69,7 +69,7 @@ pub fn warnings(case: &Case, messages: &mut Vec<String>) {
         let material = &case.materials[body.material];
         let [low, high] = Ranges::of(case, body, MOST_SAMPLES / 100).pressure.0;
         let largest = if high.abs() < low.abs() { low } else { high };
-        let bulk_modulus = material.eos.bulk_modulus(material.reference_density);
+        let bulk_modulus = material.bulk_modulus();
         if body.density.is_some() || largest.abs() <= PRESSURE * bulk_modulus {
             continue;
         }
@@ -97,7 +97,7 @@ fn free_density(case: &Case, body: &Body, temperature: f64) -> Option<f64> {
     let reference = material.reference_density;
     let pressure = |density: f64| {
         let energy = material.energy(density, temperature)?;
-        Some(material.eos.at(reference, density, energy).pressure)
+        Some(material.virgin(density, energy).pressure)
     };
     let (mut low, mut high) = (0.75 * reference, 1.25 * reference);
     if pressure(low)? > 0.0 || pressure(high)? < 0.0 {
@@ -179,9 +179,7 @@ impl Ranges {
             range.include(*v);
         }
         let energy = initial.specific_energy;
-        let state = material
-            .eos
-            .at(material.reference_density, initial.density, energy);
+        let state = material.virgin(initial.density, energy);
         self.temperature.include(initial.temperature.unwrap_or(0.0));
         self.energy.include(energy);
         // Failed material bears no tension.

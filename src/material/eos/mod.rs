@@ -3,7 +3,7 @@
 //! One is a file that implements [`EquationOfState`]; its row here gives it a name and a key of the input, its rows in
 //! `input/schema/materials.rs` its constants.
 
-use super::{Constants, Contradiction, LANES, Lanes, Listed};
+use super::{Constants, Contradiction, LANES, Lanes, Listed, PointBatch, Porosity, PorousPoint};
 
 /// Pressure and its derivatives at one state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Response {
 impl Response {
     /// Takes the response of one point to a lane.
     #[inline(always)]
-    fn set(&mut self, k: usize, at: PointResponse) {
+    pub(super) fn set(&mut self, k: usize, at: PointResponse) {
         self.pressure[k] = at.pressure;
         self.dp_drho[k] = at.dp_drho;
         self.dp_de[k] = at.dp_de;
@@ -157,6 +157,18 @@ macro_rules! equations_of_state {
                 }
             }
 
+            /// Points of a batch of porous matter.
+            pub(super) fn porous(
+                &self,
+                porosity: &Porosity,
+                batch: &PointBatch,
+                crushes: bool,
+            ) -> [PorousPoint; LANES] {
+                match self {
+                    $( Self::$law(law) => porosity.of_batch(law, batch, crushes), )+
+                }
+            }
+
             /// [`Self::response`] of the equations that act in a function of their own.
             #[inline(never)]
             fn apart(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {
@@ -180,5 +192,13 @@ equations_of_state! {
     tillotson: Tillotson;
     /// Ideal or stiffened gas.
     ideal_gas: IdealGas;
+    /// Products of an explosive by Jones, Wilkins and Lee, with its burn.
+    jwl: Jwl;
+    /// Murnaghan's law, without heat.
+    murnaghan: Murnaghan;
+    /// A table of densities and temperatures.
+    table: Table;
 }
+pub use jwl::{Burn, UNLIT};
 pub use linear::LinearForm;
+pub use table::Grid;

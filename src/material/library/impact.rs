@@ -13,7 +13,7 @@ const FLUID: &str = "without strength: its own is for the case to choose";
 
 records! {
     "aluminium-tillotson", "aluminium to vaporisation, strength of 6061-T6":
-        tillotson(2700.0, [0.5, 1.63, 75.2e9, 65e9], [5e6, 3e6, 13.9e6], [27.6e9, 0.29e9]),
+        aluminium(),
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
@@ -46,6 +46,16 @@ records! {
             )
         },
         &[("strength", FLUID), ("", TILLOTSON)];
+}
+
+/// Aluminium, with the strength of 6061-T6.
+pub(super) fn aluminium() -> Parts {
+    tillotson(
+        2700.0,
+        [0.5, 1.63, 75.2e9, 65e9],
+        [5e6, 3e6, 13.9e6],
+        [27.6e9, 0.29e9],
+    )
 }
 
 /// Density (kg/m³), `[a, b, A (Pa), B (Pa)]`, `[E₀, e_iv, e_cv]` (J/kg), `[G, Y]` (Pa; zero for a

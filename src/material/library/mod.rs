@@ -30,12 +30,14 @@ macro_rules! records {
 
 mod alloys;
 mod ductile;
+mod explosives;
 mod fluids;
 mod impact;
 mod metal;
 mod metals;
 mod paper;
 mod polymers;
+mod porous;
 
 /// Parts from which a record makes its material.
 struct Parts {
@@ -52,11 +54,13 @@ fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
         ductile::RECORDS,
+        explosives::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,
         metals::RECORDS,
         paper::RECORDS,
         polymers::RECORDS,
+        porous::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);
@@ -75,13 +79,17 @@ pub fn find(name: &str) -> Option<Material> {
     record(name).map(|record| {
         let parts = (record.make)();
         let heat = |constants| Thermal::new(constants, parts.density, &parts.eos);
+        let porosity = porous::of(record.name, parts.density, &parts.eos);
         Material {
             name: record.name.to_owned(),
-            reference_density: parts.density,
+            reference_density: porosity
+                .as_ref()
+                .map_or(parts.density, |pores| pores.density),
             thermal: parts.thermal.map(heat),
             eos: parts.eos,
             strength: parts.strength,
             failure: parts.failure,
+            porosity,
         }
     })
 }

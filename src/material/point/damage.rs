@@ -95,6 +95,17 @@ pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
     }
 }
 
+/// Pores that are crushed damage the matter: cube roots of damage add up (Jutzi, Benz & Michel 2008, Icarus 198, 242).
+#[inline(always)]
+pub(super) fn crush(point: &mut PointBatch, now: &Conditions) {
+    for k in 0..LANES {
+        if now.crushing[k] > 0.0 {
+            let edge = libm::cbrt(point.damage[k]) + now.crushing[k];
+            point.damage[k] = edge * edge * edge;
+        }
+    }
+}
+
 /// Matter at the melting temperature fails as soon as nothing presses it.
 #[inline(always)]
 pub(super) fn melt(point: &mut PointBatch, now: &Conditions) {

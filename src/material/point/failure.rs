@@ -316,6 +316,7 @@ macro_rules! failure_laws {
                             law.open(point, now);
                         } )+
                     }
+                    damage::crush(point, now);
                     damage::melt(point, now);
                     damage::end(point);
                 }

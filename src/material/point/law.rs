@@ -139,6 +139,8 @@ pub struct Conditions {
     pub dt: f64,
     /// Reference density ρ₀ (kg/m³).
     pub reference_density: f64,
+    /// Compression of the matter between pores over that of the whole, `α/α₀`; one without pores.
+    pub packing: Lanes,
     /// Temperatures (K), where a law follows them; those of the reference state without heat.
     pub temperature: Lanes,
     /// Constants by which temperatures are judged.
@@ -156,6 +158,8 @@ pub struct Conditions {
     /// Share of stress that damage had left at the beginning of the step: stress over this is that
     /// of the material between the cracks.
     pub kept: Lanes,
+    /// Growth of the cube root of damage by pores that have been crushed in the step.
+    pub crushing: Lanes,
     /// Equivalent plastic strain of the step.
     pub plastic_increment: Lanes,
     /// Logarithmic derivative of the flow stress by the plastic strain, with the heat of the flow, where
@@ -177,6 +181,7 @@ impl Conditions {
         Self {
             dt,
             reference_density,
+            packing: [1.0; LANES],
             temperature: [thermal.reference_temperature; LANES],
             thermal,
             melting: [f64::INFINITY; LANES],
@@ -185,6 +190,7 @@ impl Conditions {
             reference_shear_modulus: shear_modulus,
             bulk_modulus,
             kept: [1.0; LANES],
+            crushing: [0.0; LANES],
             plastic_increment: [0.0; LANES],
             hardening: [0.0; LANES],
             options: FailureOptions::DEFAULT,
@@ -194,7 +200,7 @@ impl Conditions {
     /// Reference size of the point (m) in lane k: edge of the cube, square or length that its mass
     /// fills at the reference density.
     #[inline(always)]
-    pub(super) fn size(&self, point: &PointBatch, k: usize) -> f64 {
+    pub(crate) fn size(&self, point: &PointBatch, k: usize) -> f64 {
         let filled = point.mass[k] / self.reference_density;
         match self.options.dimension {
             1 => filled,
@@ -427,8 +433,13 @@ mod tests {
                 let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
                 let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
                 let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
-                // A gas bears no tension that it could fail by.
-                if !matches!(material.eos, Eos::IdealGas(_)) {
+                // A gas, burnt or not, bears no tension that it could fail by.
+                if material.porosity.is_some() {
+                    named.insert("distension");
+                }
+                if material.burns() {
+                    named.extend(["burn", "lighting_time"]);
+                } else if !matches!(material.eos, Eos::IdealGas(_)) {
                     named.extend(material.failure.state());
                 }
                 assert_eq!(changed, named, "{name} {failure:?}");

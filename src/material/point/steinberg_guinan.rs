@@ -152,7 +152,7 @@ impl Law for SteinbergGuinan {
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {
         let reference = now.thermal.reference_temperature;
         for k in 0..LANES {
-            let eta = point.density[k] / now.reference_density;
+            let eta = point.density[k] / now.reference_density * now.packing[k];
             let g = self.stiffening(point.pressure[k], eta, now.temperature[k], reference);
             now.softening[k] = g;
             now.shear_modulus[k] = self.shear_modulus * g;

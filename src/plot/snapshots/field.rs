@@ -138,13 +138,17 @@ const CONTACT_STRESS: &str = "contact_stress";
 /// The field that separates stress points from particles.
 const STRESS_MASS: &str = "stress_mass";
 /// The fields of stress points, if there are any.
-const OF_STRESS_POINTS: [&str; 12] = [
+const OF_STRESS_POINTS: [&str; 16] = [
     "density",
     "pressure",
     "deviatoric_stress",
     "plastic_strain",
     "damage",
     "failure_energy",
+    "compaction",
+    "distension",
+    "burn",
+    "lighting_time",
     "specific_energy",
     "sound_speed",
     "velocity_gradient",

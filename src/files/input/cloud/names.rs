@@ -19,6 +19,8 @@ pub fn of_array(quantity: Quantity) -> &'static [&'static str] {
         Quantity::PlasticStrain => &["plastic_strain"],
         Quantity::Damage => &["damage"],
         Quantity::FailureEnergy => &["failure_energy"],
+        Quantity::Compaction => &["compaction"],
+        Quantity::Burn => &["burn"],
         Quantity::HourglassDisplacement => &["hourglass_displacement"],
     }
 }

@@ -152,6 +152,7 @@ fn is_sound(quantity: Quantity, x: f64) -> bool {
             Quantity::PlasticStrain | Quantity::Damage | Quantity::FailureEnergy => {
                 (0.0..9e16).contains(&x)
             }
+            Quantity::Compaction | Quantity::Burn => (0.0..=1.0).contains(&x),
             Quantity::Velocity => x.abs() < 1.7e8,
             Quantity::Position | Quantity::HourglassDisplacement => x.abs() < 1e9,
             Quantity::SpecificEnergy => x.abs() < 9e16,
@@ -164,6 +165,7 @@ fn range(quantity: Quantity) -> &'static str {
         Quantity::Mass | Quantity::Volume | Quantity::Density | Quantity::Temperature => {
             "and must be a positive number that nature knows"
         }
+        Quantity::Compaction | Quantity::Burn => "and must be between 0 and 1",
         _ => "and must be a number that nature knows",
     }
 }

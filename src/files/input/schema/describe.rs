@@ -10,7 +10,10 @@ use super::ClockParams;
 use crate::input::forms::{Named, OneOrMany, OrNone};
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
-use material::{AfterSpall, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
+use material::{
+    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
+    RateForm, StrengthOf,
+};
 use model::{
     Axis, BodyForm, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
     PotentialRange, Precision, SphForm,
@@ -244,6 +247,9 @@ pub(super) use described_words;
 
 described_words!(
     AfterSpall,
+    Burn,
+    CompactionDamage,
+    StrengthOf,
     Axis,
     ContactDirection,
     Coupling,

@@ -8,14 +8,17 @@ use crate::input::quantity::{
     Density, FractureEnergy, NumberDensity, PerPressure, PerTemperature, Placed, Pressure, Rate,
     SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
-use material::{AfterSpall, Coupling, Crosses, Effect, Flaws, LinearForm, Molten, RateForm};
+use material::{
+    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
+    RateForm, StrengthOf,
+};
 
 optional_tables! {
     /// `[material.NAME]`: from the library, or inline, or single values changed.
     MaterialParams {
         /// Name in the library.
         library: Option<Spanned<String>>;
-        /// Reference density.
+        /// Reference density; of a porous material that of the solid between the pores.
         density: Option<Placed<Density>>, Positive;
         /// Equation of state.
         eos: Option<Spanned<EosParams>>;
@@ -25,6 +28,8 @@ optional_tables! {
         failure: Option<Spanned<OrNone<FailureParams>>>;
         /// Temperature.
         thermal: Option<Spanned<ThermalParams>>;
+        /// Pores.
+        porosity: Option<Spanned<OrNone<PorosityParams>>>;
     }
 
     /// `thermal`
@@ -109,6 +114,42 @@ macro_rules! equations_of_state {
                 stiffening_pressure: Placed<Pressure> = "0", NotNegative;
                 /// Pressure of the reference state.
                 reference_pressure: Placed<Pressure> = "0", NotNegative;
+            }
+            /// `eos.murnaghan`: Murnaghan.
+            murnaghan: MurnaghanParams => Murnaghan {
+                /// Bulk modulus.
+                bulk_modulus: Placed<Pressure>, Positive;
+                /// Its derivative by the pressure.
+                exponent: Spanned<f64>, Positive;
+            }
+            /// `eos.jwl`: products of an explosive.
+            jwl: JwlParams => Jwl {
+                /// Coefficient A.
+                a: Placed<Pressure>, Positive;
+                /// Coefficient B.
+                b: Placed<Pressure>, NotNegative;
+                /// Exponent R₁.
+                r1: Spanned<f64>, Positive;
+                /// Exponent R₂.
+                r2: Spanned<f64>, Positive;
+                /// Grüneisen parameter.
+                omega: Spanned<f64>, Positive;
+                /// Specific energy of detonation; or that of the volume.
+                e0: Placed<SpecificEnergy>, Positive;
+                /// Speed of the detonation.
+                detonation_velocity: Placed<Velocity>, Positive;
+                /// Pressure of Chapman and Jouguet.
+                cj_pressure: Placed<Pressure>, Positive;
+                /// Bulk modulus of unburnt matter.
+                bulk_modulus: Placed<Pressure> = "0", NotNegative => "unburnt matter bears no pressure";
+                /// What burns it.
+                burn: Spanned<Burn> = Burn::Either;
+                /// Width of the programmed burn in particles.
+                width: Spanned<f64> = 3.0, Positive;
+            } or {
+                /// Energy of detonation of a volume of unburnt matter.
+                energy_density: Placed<Pressure>, Positive
+                    => e0: |law: &Jwl, rho0, energy| Jwl { e0: energy / rho0, ..*law };
             }
         }
     };
@@ -255,6 +296,43 @@ macro_rules! failure_laws {
 }
 pub(in crate::input) use failure_laws;
 
+/// Passes the laws of compaction to the macro `$then`, in the same form.
+macro_rules! compaction_laws {
+    ($then:ident) => {
+        $then! {
+            /// `porosity.p_alpha`: distension from the pressure.
+            p_alpha: PAlphaParams => PAlpha {
+                /// Pressure from which on pores crush.
+                elastic_pressure: Placed<Pressure>, NotNegative;
+                /// Pressure at which all pores are crushed.
+                solid_pressure: Placed<Pressure>, Positive;
+                /// Exponent of the crush curve.
+                exponent: Spanned<f64> = 2.0, Positive;
+                /// Pressure at which the steep beginning of the crush curve ends.
+                transition_pressure: Placed<Pressure> = "0", NotNegative => "no steep beginning";
+                /// Distension of the steep beginning.
+                transition_distension: Spanned<f64> = 1.0, Positive;
+                /// Exponent of the steep beginning.
+                transition_exponent: Spanned<f64> = 2.0, Positive;
+                /// Bulk sound speed of virgin matter.
+                sound_speed: Placed<Velocity> = "0", NotNegative => "that of the solid";
+            }
+            /// `porosity.epsilon_alpha`: distension from the volumetric strain.
+            epsilon_alpha: EpsilonAlphaParams => EpsilonAlpha {
+                /// Volumetric strain from which on pores crush, negative in compression.
+                elastic_strain: Spanned<f64> = 0.0, NotPositive;
+                /// Volumetric strain at which the exponential part of the crush curve ends.
+                transition_strain: Spanned<f64>, NotPositive;
+                /// Rate of the exponential part.
+                kappa: Spanned<f64>, UpToOne;
+                /// Bulk sound speed of virgin matter.
+                sound_speed: Placed<Velocity> = "0", NotNegative => "that of the solid";
+            }
+        }
+    };
+}
+pub(in crate::input) use compaction_laws;
+
 /// Declares the tables of laws, and the one that has them all.
 macro_rules! law_tables {
     ($(
@@ -278,12 +356,17 @@ macro_rules! law_tables {
 equations_of_state!(law_tables);
 strength_laws!(law_tables);
 failure_laws!(law_tables);
+compaction_laws!(law_tables);
 
 macro_rules! eos_table {
     ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } $(or { $($way:tt)+ })? )+) => {
         optional_tables! {
             /// `eos`: exactly one of these.
-            EosParams { $( $(#[doc = $doc])+ $law: Option<$table>; )+ }
+            EosParams {
+                $( $(#[doc = $doc])+ $law: Option<$table>; )+
+                /// `eos.table`: a table of densities and temperatures.
+                table: Option<Spanned<TableParams>>;
+            }
         }
     };
 }
@@ -320,3 +403,35 @@ macro_rules! failure_table {
     };
 }
 failure_laws!(failure_table);
+
+macro_rules! porosity_table {
+    ($( $(#[doc = $doc:literal])+ $law:ident: $table:ident => $made:ident { $($keys:tt)+ } )+) => {
+        optional_tables! {
+            /// `porosity`: exactly one of these laws, and what they have in common.
+            PorosityParams {
+                $( $(#[doc = $doc])+ $law: Option<$table>; )+
+                /// Initial distension: density of the solid over that of the whole.
+                distension: Option<Spanned<f64>>, Within(1.0, 100.0);
+                /// Initial volume of pores over that of the whole, in place of the distension.
+                porosity: Option<Spanned<f64>>, Within(0.0, 0.99);
+                /// What the constants of the strength belong to.
+                strength: Option<Spanned<StrengthOf>>;
+                /// What crushing damages.
+                damage: Option<Spanned<CompactionDamage>>;
+            }
+        }
+    };
+}
+compaction_laws!(porosity_table);
+
+tables! {
+    /// `eos.table`
+    TableParams {
+        /// Path of the table, from the folder of the case.
+        file: Spanned<String>;
+        /// Temperature of the reference state.
+        reference_temperature: Option<Placed<Temperature>> = "300 K", Positive;
+        /// SHA-256 that the file must have.
+        sha256: Option<Spanned<String>>;
+    }
+}

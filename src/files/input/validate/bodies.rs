@@ -42,6 +42,7 @@ pub fn no_material() -> Material {
         strength: Strength::None,
         failure: Failure::NONE,
         thermal: None,
+        porosity: None,
     }
 }
 

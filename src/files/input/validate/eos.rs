@@ -1,13 +1,20 @@
 //! `eos`: exactly one equation of state, all of it or single values changed.
 
+use std::io;
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
 use toml::Spanned;
 
 use super::check::{Allowed, exactly_one};
 use super::laws::law;
+use super::meshes::missing_file;
 use crate::input::schema::value::Ranged;
-use crate::input::schema::{EosParams, equations_of_state};
+use crate::input::schema::{EosParams, TableParams, equations_of_state};
 use crate::input::source::Diagnostic;
-use material::{Eos, EquationOfState, Tait};
+use crate::input::triangles::absolute;
+use material::{Eos, EquationOfState, Grid, Jwl, Table, Tait};
+use results::regular;
 
 macro_rules! eos {
     ($(
@@ -24,12 +31,16 @@ macro_rules! eos {
             table: &Spanned<EosParams>,
             base: Option<&Eos>,
             rho0: f64,
+            folder: &Path,
         ) -> Result<Eos, Diagnostic> {
             let (at, params) = (table.span(), table.get_ref());
-            let choices = [$( concat!("`", stringify!($law), "`") ),+].join(", ");
-            let chosen = [$( params.$law.is_some() ),+];
+            let choices = [$( concat!("`", stringify!($law), "`"), )+ "`table`"].join(", ");
+            let chosen = [$( params.$law.is_some(), )+ params.table.is_some()];
             if chosen.iter().filter(|is_there| **is_there).count() != 1 {
                 return Err(exactly_one(at, "eos", &choices));
+            }
+            if let Some(params) = &params.table {
+                return of_table(params, rho0, folder);
             }
             $( if let Some(params) = &params.$law {
                 let base = match base {
@@ -65,3 +76,36 @@ macro_rules! eos {
     };
 }
 equations_of_state!(eos);
+
+/// Longest table that is read (bytes): ten million entries.
+const LONGEST: u64 = 1_000_000_000;
+
+/// The equation of state of the table of a file, which must be the one that the case began with.
+fn of_table(params: &Spanned<TableParams>, rho0: f64, folder: &Path) -> Result<Eos, Diagnostic> {
+    let params = params.get_ref();
+    let temperature = params.reference_temperature()?;
+    let path = folder.join(params.file.get_ref());
+    let refuse = |cause: &str| {
+        let title = format!("cannot take the table `{}`: {cause}", params.file.get_ref());
+        Diagnostic::new(params.file.span(), title)
+    };
+    let bytes = regular::content(&path, LONGEST, "a table").map_err(|cause| {
+        let diagnostic = refuse(&cause.to_string());
+        if cause.kind() == io::ErrorKind::NotFound {
+            missing_file(diagnostic, &path)
+        } else {
+            diagnostic
+        }
+    })?;
+    let sha256 = format!("{:x}", Sha256::digest(&bytes));
+    if let Some(known) = params.sha256.as_ref().filter(|d| *d.get_ref() != sha256) {
+        let path = absolute(&path);
+        let title = format!("the file {path} is no longer the one that the case began with");
+        return Err(Diagnostic::new(known.span(), title)
+            .help("bring it back, or begin a new case without `sha256`"));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| refuse("it is no text"))?;
+    let grid = Grid::read(&text).map_err(|cause| refuse(&cause))?;
+    let table = Table::new(grid, rho0, temperature, [absolute(&path), sha256]);
+    Ok(Eos::Table(table.map_err(|cause| refuse(&cause))?))
+}

@@ -57,7 +57,7 @@ pub fn failure(
         Some(OrNone::None) => Failure::NONE,
         Some(OrNone::Table(params)) => laws(params, &base)?,
     };
-    if !failure.is_none() {
+    if !failure.is_none() || matches!(eos, Eos::Jwl(_)) {
         failure.options.dimension = u8::try_from(dimension).unwrap_or(3);
     }
     if let Some(table) = table

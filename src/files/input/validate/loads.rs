@@ -61,6 +61,7 @@ impl Reader<'_> {
             velocities: velocities?,
             absorbers: Vec::new(),
             surfaces,
+            detonators: Vec::new(),
         })
     }
 

@@ -1,28 +1,31 @@
 //! Materials: from the library with single values changed, or inline.
 
 use std::ops::Range;
+use std::path::Path;
 
 use toml::Spanned;
 
 use super::check::required;
 use super::eos::eos;
 use super::failure::failure;
+use super::porosity::{Matrix, porosity};
 use super::strength::strength;
 use crate::input::forms::Named;
 use crate::input::names;
 use crate::input::schema::{MaterialParams, ThermalParams};
 use crate::input::source::Diagnostic;
-use material::{Eos, Material, Molten, Thermal, ThermalConstants, library};
+use material::{Eos, Material, Molten, Strength, Thermal, ThermalConstants, library};
 
 /// Names and materials in the order of the input.
 pub fn materials(
     params: &Named<MaterialParams>,
     dimension: usize,
+    folder: &Path,
 ) -> Result<(Vec<String>, Vec<Material>), Diagnostic> {
     let materials: Result<_, _> = params
         .0
         .iter()
-        .map(|(n, t)| material(n, t, dimension))
+        .map(|(n, t)| material(n, t, dimension, folder))
         .collect();
     let names = params.0.iter().map(|(name, _)| name.get_ref().clone());
     Ok((names.collect(), materials?))
@@ -32,6 +35,7 @@ fn material(
     name: &Spanned<String>,
     table: &Spanned<MaterialParams>,
     dimension: usize,
+    folder: &Path,
 ) -> Result<Material, Diagnostic> {
     names::check(name, "material")?;
     let params = table.get_ref();
@@ -50,10 +54,10 @@ fn material(
     if base.is_none() && params.density.is_none() {
         return Err(missing("density"));
     }
-    let known_density = base.map_or(0.0, |b| b.reference_density);
-    let reference_density = params.density()?.unwrap_or(known_density);
+    let known_density = base.map_or(0.0, Material::matter_density);
+    let density = params.density()?.unwrap_or(known_density);
     let eos = match (&params.eos, base.map(|b| &b.eos)) {
-        (Some(table), base) => eos(table, base, reference_density)?,
+        (Some(table), base) => eos(table, base, density, folder)?,
         (None, base) => base.cloned().ok_or_else(|| missing("eos"))?,
     };
     let strength = match (&params.strength, base.map(|b| &b.strength)) {
@@ -61,26 +65,53 @@ fn material(
         (None, base) => base.cloned().ok_or_else(|| missing("strength"))?,
     };
     let base_thermal = base.and_then(|b| b.thermal.as_ref());
-    let thermal = thermal(
-        params.thermal.as_ref(),
-        base_thermal,
-        reference_density,
-        &eos,
-    )?;
+    let thermal = thermal(params.thermal.as_ref(), base_thermal, density, &eos)?;
     let (given, known) = (params.failure.as_ref(), base.map(|b| &b.failure));
     let failure = failure(given, known, (&eos, &strength), dimension)?;
+    let matrix = Matrix {
+        eos: &eos,
+        density,
+        strength: &strength,
+        failure: &failure,
+    };
+    let known = base.and_then(|b| b.porosity.as_ref());
+    let pores = porosity(params.porosity.as_ref(), known, &matrix)?;
     let material = Material {
         name: name.get_ref().clone(),
-        reference_density,
+        reference_density: pores.as_ref().map_or(density, |pores| pores.density),
         eos,
         strength,
         failure,
         thermal,
+        porosity: pores,
     };
+    burns_alone(&material, name, params)?;
     match missing_heat(&material) {
         None => Ok(material),
         Some(key) => Err(heat_diagnostic(&material, key, name.span(), params)),
     }
+}
+
+/// Refuses an explosive whose detonation contradicts itself, or which bears shear.
+fn burns_alone(
+    material: &Material,
+    name: &Spanned<String>,
+    params: &MaterialParams,
+) -> Result<(), Diagnostic> {
+    let Eos::Jwl(explosive) = &material.eos else {
+        return Ok(());
+    };
+    if explosive.cj_volume(material.reference_density) <= 0.0 {
+        let at = params.eos.as_ref().map_or(name.span(), Spanned::span);
+        let title = "`cj_pressure` must be below ρ₀ D² of the density and `detonation_velocity`";
+        return Err(Diagnostic::new(at, title));
+    }
+    if !matches!(material.strength, Strength::None | Strength::Viscous(_)) {
+        let at = params.strength.as_ref().map_or(name.span(), Spanned::span);
+        let title = "an explosive burns to gas and has no `strength`";
+        return Err(Diagnostic::new(at, title).help("`strength = \"none\"`"));
+    }
+    Ok(())
 }
 
 /// Says that a law follows the temperature and has no `key`.
@@ -116,7 +147,7 @@ fn missing_heat(material: &Material) -> Option<&'static str> {
 fn melts_unknown(material: &Material) -> bool {
     material.failure.options.molten == Some(Molten::Fails)
         && material
-            .melting_temperature(material.reference_density)
+            .melting_temperature(material.reference_density, 0.0)
             .is_none()
 }
 

@@ -7,6 +7,7 @@ mod across;
 mod bodies;
 mod contact;
 mod defaults;
+mod detonators;
 mod domain;
 mod eos;
 mod failure;
@@ -25,6 +26,7 @@ mod named;
 mod numerical_limits;
 mod output;
 mod particles;
+mod porosity;
 mod region;
 mod shapes;
 mod solids;
@@ -59,7 +61,7 @@ const MOST_OVERLAP: f64 = 0.5;
 pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
     let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, mut materials) = materials::materials(&params.material, dimension)?;
+    let (names, mut materials) = materials::materials(&params.material, dimension, folder)?;
     let (sph, smoothing) = sph(&params.sph, &materials)?;
     let mut bodies = bodies::Reader {
         dimension,
@@ -119,6 +121,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
+    case.loads.detonators = detonators::detonators(&params.detonate, &params.body, case)?;
     total::resolve(case, &params.body)?;
     // Its defaults hang on the forms of bodies.
     case.time_step = time_step(
@@ -257,7 +260,7 @@ pub(super) fn sph(
     params: &SphParams,
     materials: &[Material],
 ) -> Result<(SphOptions, f64), Diagnostic> {
-    let is_gas = |material: &Material| matches!(material.eos, Eos::IdealGas(_));
+    let is_gas = |material: &Material| matches!(material.eos, Eos::IdealGas(_) | Eos::Jwl(_));
     let expands = params.smoothing_length.is_none() && materials.iter().any(is_gas);
     let [min, max] = if expands { [1.0, 10.0] } else { [0.6, 2.0] };
     let bounds = SmoothingLength::Variable {

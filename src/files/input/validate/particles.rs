@@ -50,6 +50,8 @@ impl Files<'_> {
         let volumes = volumes.map_err(|words| refuse(&words))?;
         self.heat(body, &mut rows).map_err(|words| refuse(&words))?;
         self.may_fail(&mut rows).map_err(|words| refuse(&words))?;
+        self.may_crush(&mut rows).map_err(|words| refuse(&words))?;
+        self.may_burn(&mut rows).map_err(|words| refuse(&words))?;
         #[allow(clippy::cast_precision_loss)] // far fewer than 2^52
         let mean = volumes.iter().fold(0.0, |sum, v| sum + v) / volumes.len() as f64;
         let mean = edge(mean, self.dimension);
@@ -225,6 +227,36 @@ impl Files<'_> {
         }
         rows.columns.push((Quantity::SpecificEnergy, energies));
         Ok(())
+    }
+
+    /// Matter whose pores have been crushed must be of a material that has some.
+    fn may_crush(&self, rows: &mut Table) -> Result<(), String> {
+        let Some(material) = self.material.filter(|m| m.porosity.is_none()) else {
+            return Ok(());
+        };
+        let compaction = rows.take(Quantity::Compaction);
+        match compaction.into_iter().flatten().find(|x| *x > 0.0) {
+            Some(compaction) => Err(format!(
+                "it tells a compaction of {compaction}, and the material `{}` has no pores",
+                material.name
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// Matter that has burnt must be of an explosive.
+    fn may_burn(&self, rows: &mut Table) -> Result<(), String> {
+        let Some(material) = self.material.filter(|m| !m.burns()) else {
+            return Ok(());
+        };
+        let burn = rows.take(Quantity::Burn);
+        match burn.into_iter().flatten().find(|x| *x > 0.0) {
+            Some(burn) => Err(format!(
+                "it tells a burnt share of {burn}, and the material `{}` is no explosive",
+                material.name
+            )),
+            None => Ok(()),
+        }
     }
 
     /// Matter that has failed must be of a material that can.
