@@ -122,7 +122,7 @@ impl Material {
             damage: [damage; LANES],
             ..PointBatch::ZERO
         };
-        self.failure.limit_tension(&mut point);
+        self.limit_tension(&mut point);
         let limited = point.pressure[0];
         let matter = if limited > at.pressure {
             self.torn_density(density, specific_energy, limited)
@@ -235,8 +235,15 @@ impl Material {
             damage: *damage,
             ..PointBatch::ZERO
         };
-        self.failure.limit_tension(&mut point);
+        self.limit_tension(&mut point);
         point.pressure
+    }
+
+    /// Bounds the tension: that of the strength, and what failure leaves of it.
+    #[inline(always)]
+    fn limit_tension(&self, point: &mut PointBatch) {
+        self.strength.limit_tension(point);
+        self.failure.limit_tension(point);
     }
 
     /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
@@ -287,13 +294,17 @@ impl Material {
     #[inline(always)]
     fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let rho0 = self.reference_density;
-        if ALL && self.failure.follows_state() {
-            point::limit_expansion(batch, rho0);
+        let torn = self.strength.bounds_tension();
+        if ALL && (torn || self.failure.follows_state()) {
+            point::limit_expansion(batch, rho0, torn);
         }
         let response = self
             .eos
             .response(rho0, &batch.density, &batch.specific_energy);
         batch.pressure = response.pressure;
+        if ALL {
+            self.strength.limit_tension(batch);
+        }
         self.failure.limit_tension(batch);
         let moduli = [self.strength.shear_modulus(), self.eos.bulk_modulus(rho0)];
         let mut now = Conditions::new(dt, rho0, moduli);

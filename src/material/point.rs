@@ -4,14 +4,20 @@
 //! its rows in `input/schema/materials.rs` its constants.
 
 mod batch;
+mod collins;
+mod collins_failure;
 mod damage;
+mod drucker_prager;
 mod elastic;
 mod failure;
 mod grady_kipp;
+mod ivanov;
 mod jaumann;
 mod johnson_cook;
 mod johnson_cook_failure;
 mod law;
+mod lundborg;
+mod mohr_coulomb;
 mod neo_hookean;
 mod plastic_strain;
 mod principal_stress;
@@ -24,16 +30,22 @@ mod von_mises;
 
 use super::declare::Listed;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
+pub use collins::Collins;
+pub use collins_failure::CollinsFailure;
 pub(super) use damage::limit_expansion;
+pub use drucker_prager::DruckerPrager;
 pub use elastic::Elastic;
 pub use failure::FAILED;
 use failure::failure_laws;
 pub use failure::{Effect, FailureOptions, Molten, viscous_speed};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
+pub use ivanov::Ivanov;
 pub use johnson_cook::JohnsonCook;
 pub use johnson_cook_failure::{Coupling, JohnsonCookFailure, RateForm};
 use law::strength_laws;
 pub use law::{Conditions, Contradiction, Law};
+pub use lundborg::Lundborg;
+pub use mohr_coulomb::MohrCoulomb;
 pub use neo_hookean::NeoHookean;
 pub use plastic_strain::PlasticStrain;
 pub use principal_stress::PrincipalStress;
@@ -103,6 +115,14 @@ strength_laws! {
     johnson_cook: JohnsonCook;
     /// Elastic–plastic with the moduli of Steinberg and Guinan.
     steinberg_guinan: SteinbergGuinan;
+    /// Strength that grows with pressure, linear up to a limit.
+    drucker_prager: DruckerPrager;
+    /// Strength that grows with pressure, by the friction in the plane of most shear.
+    mohr_coulomb: MohrCoulomb;
+    /// Strength of intact rock, which grows with pressure towards a limit.
+    lundborg: Lundborg;
+    /// Strength of rock, intact and damaged.
+    collins: Collins;
 }
 
 // The key in the input, and the law. A material may have all of them; they act in this order.
@@ -115,6 +135,10 @@ failure_laws! {
     plastic_strain: PlasticStrain;
     /// Ductile damage of Johnson and Cook.
     johnson_cook: JohnsonCookFailure;
+    /// Shear damage with a failure strain linear in the pressure.
+    ivanov: Ivanov;
+    /// Shear damage of rock that is brittle, semi-brittle or ductile.
+    collins: CollinsFailure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

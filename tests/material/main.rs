@@ -12,6 +12,7 @@ mod exact_hugoniot;
 mod exact_sum;
 mod failure;
 mod fluids;
+mod granular;
 mod plastic;
 mod rubber;
 mod spall;

@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ductile` fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ductile` and `rocks` fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -36,6 +36,7 @@ mod metal;
 mod metals;
 mod paper;
 mod polymers;
+mod rocks;
 
 /// Parts from which a record makes its material.
 struct Parts {
@@ -57,6 +58,7 @@ fn records() -> Vec<&'static Record> {
         metals::RECORDS,
         paper::RECORDS,
         polymers::RECORDS,
+        rocks::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);

@@ -186,6 +186,62 @@ macro_rules! strength_laws {
                 /// Its volume correction.
                 a: Spanned<f64>, NotNegative;
             }
+            /// `strength.drucker_prager`: linear in the pressure up to a limit.
+            drucker_prager: DruckerPragerParams => DruckerPrager {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit.
+                max_strength: Placed<Pressure> = "0", NotNegative => "no limit";
+            }
+            /// `strength.mohr_coulomb`: Mohr and Coulomb.
+            mohr_coulomb: MohrCoulombParams => MohrCoulomb {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Cohesion.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Coefficient of friction tan φ.
+                friction: Spanned<f64>, NotNegative;
+                /// Largest principal tension.
+                tensile_strength: Placed<Pressure>, NotNegative;
+            }
+            /// `strength.lundborg`: intact rock.
+            lundborg: LundborgParams => Lundborg {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure there.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit at high pressure.
+                max_strength: Placed<Pressure>, Positive;
+            }
+            /// `strength.collins`: rock, intact and damaged.
+            collins: CollinsParams => Collins {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ of intact rock at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure there.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit at high pressure.
+                max_strength: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ of damaged rock at zero pressure.
+                damaged_cohesion: Placed<Pressure> = "0", NotNegative;
+                /// Its slope over the pressure.
+                damaged_friction: Spanned<f64>, NotNegative;
+                /// Its limit.
+                damaged_max_strength: Placed<Pressure> = "0", NotNegative => "that of intact rock";
+                /// Coefficient ξ of softening by heat.
+                softening: Spanned<f64> = 0.0, NotNegative => "none";
+                /// Pressure a in Simon's law of melting.
+                simon_a: Placed<Pressure> = "0", NotNegative => "melts at any pressure as at none";
+                /// Exponent c in Simon's law.
+                simon_c: Spanned<f64> = 1.0, Positive;
+            }
         }
     };
 }
@@ -234,6 +290,22 @@ macro_rules! failure_laws {
                 spall_stress: Placed<Pressure> = "0", NotNegative => "no such stress";
                 /// Share of the strength that damage takes before failure: none, its own, or that in shear bands.
                 coupling: Spanned<Coupling> = Coupling::Uncoupled;
+            }
+            /// `failure.ivanov`: shear damage of rock.
+            ivanov: IvanovParams => Ivanov {
+                /// Failure strain of brittle rock.
+                least_strain: Spanned<f64> = 1e-4, Positive;
+                /// Growth of the failure strain with pressure.
+                slope: Placed<PerPressure> = "1e-11/Pa", NotNegative;
+                /// Pressure from which on it grows.
+                pressure: Placed<Pressure> = "300 MPa", NotNegative;
+            }
+            /// `failure.collins`: shear damage of rock, brittle to ductile.
+            collins: CollinsFailureParams => CollinsFailure {
+                /// Pressure of the brittle–ductile transition.
+                brittle_ductile: Placed<Pressure>, Positive;
+                /// Pressure of the brittle–plastic transition.
+                brittle_plastic: Placed<Pressure>, Positive;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {
