@@ -16,7 +16,9 @@ pub mod thermal;
 
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
-pub use eos::{Eos, EquationOfState, IdealGas, Linear, LinearForm, MieGruneisen, Tait, Tillotson};
+pub use eos::{
+    Eos, EquationOfState, IdealGas, Linear, LinearForm, MieGruneisen, Polynomial, Tait, Tillotson,
+};
 pub use point::*;
 pub use rest::{NEGLIGIBLE, Rest};
 pub use thermal::{Thermal, ThermalConstants};
@@ -303,6 +305,7 @@ impl Material {
             .response(rho0, &batch.density, &batch.specific_energy);
         batch.pressure = response.pressure;
         if ALL {
+            self.failure.bulk(batch);
             self.strength.limit_tension(batch);
         }
         self.failure.limit_tension(batch);

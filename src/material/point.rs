@@ -15,6 +15,8 @@ mod ivanov;
 mod jaumann;
 mod johnson_cook;
 mod johnson_cook_failure;
+mod johnson_holmquist_2;
+mod johnson_holmquist_2_failure;
 mod law;
 mod lundborg;
 mod mohr_coulomb;
@@ -42,8 +44,10 @@ pub use grady_kipp::{Crosses, Flaws, GradyKipp};
 pub use ivanov::Ivanov;
 pub use johnson_cook::JohnsonCook;
 pub use johnson_cook_failure::{Coupling, JohnsonCookFailure, RateForm};
+pub use johnson_holmquist_2::JohnsonHolmquist2;
+pub use johnson_holmquist_2_failure::JohnsonHolmquist2Failure;
 use law::strength_laws;
-pub use law::{Conditions, Contradiction, Law};
+pub use law::{Conditions, Contradiction, Curves, Law};
 pub use lundborg::Lundborg;
 pub use mohr_coulomb::MohrCoulomb;
 pub use neo_hookean::NeoHookean;
@@ -87,6 +91,8 @@ macro_rules! point_fields {
             first_flaw: Scalar, Memory;
             /// Strain at which the next flaw becomes active; zero if none has been drawn.
             next_flaw: Scalar, Memory;
+            /// Pressure by bulking of what is broken (Pa).
+            bulking_pressure: Scalar, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).
@@ -123,6 +129,8 @@ strength_laws! {
     lundborg: Lundborg;
     /// Strength of rock, intact and damaged.
     collins: Collins;
+    /// Strength of ceramics, intact and fractured.
+    johnson_holmquist_2: JohnsonHolmquist2;
 }
 
 // The key in the input, and the law. A material may have all of them; they act in this order.
@@ -139,6 +147,8 @@ failure_laws! {
     ivanov: Ivanov;
     /// Shear damage of rock that is brittle, semi-brittle or ductile.
     collins: CollinsFailure;
+    /// Damage of ceramics, and their bulking.
+    johnson_holmquist_2: JohnsonHolmquist2Failure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

@@ -184,6 +184,8 @@ macro_rules! owners {
                 const LOCALISED = 1 << 25;
                 /// The conventional form of the sums.
                 const CONVENTIONAL = 1 << 26;
+                /// Materials that bulk as they break.
+                const BULKING = 1 << 31;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

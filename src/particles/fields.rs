@@ -132,6 +132,8 @@ particle_fields! {
     first_flaw: Scalar,                   "",       State,    -,              Never,    FLAWS;
     /// Strain at which the next flaw becomes active; zero if none has been drawn.
     next_flaw: Scalar,                    "",       State,    -,              Never,    FLAWS;
+    /// Pressure by bulking of what is broken.
+    bulking_pressure: Scalar,             "Pa",     State,    -,              OnDemand, BULKING;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

@@ -3,6 +3,7 @@
 #[path = "../common/exact/mod.rs"]
 mod exact;
 
+mod ceramics;
 mod cracks;
 mod eos;
 mod exact_bars;

@@ -25,6 +25,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::LOCALISED, localises),
         (Owner::TOTAL, case.bodies.iter().any(|body| body.total)),
         (Owner::FLAWS, case.fails_with("flaws")),
+        (Owner::BULKING, case.fails_with("bulking_pressure")),
         (Owner::YIELD, case.may_yield()),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),

@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ductile` and `rocks` fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `ductile` and `rocks` fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -29,6 +29,7 @@ macro_rules! records {
 }
 
 mod alloys;
+mod ceramics;
 mod ductile;
 mod fluids;
 mod impact;
@@ -52,6 +53,7 @@ struct Parts {
 fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
+        ceramics::RECORDS,
         ductile::RECORDS,
         fluids::RECORDS,
         impact::RECORDS,

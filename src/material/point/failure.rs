@@ -278,6 +278,16 @@ macro_rules! failure_laws {
                 false $( || $law::FOLLOWS_STATE && self.$key.is_some_and(|law| law.follows_state()) )+
             }
 
+            /// Adds the pressure of bulking to that of the equation of state.
+            #[inline(always)]
+            pub(in crate) fn bulk(&self, point: &mut PointBatch) {
+                if false $( || $law::BULKS && self.$key.is_some() )+ {
+                    for k in 0..LANES {
+                        point.pressure[k] += point.bulking_pressure[k];
+                    }
+                }
+            }
+
             /// Stage 1.
             #[inline(always)]
             pub(in crate) fn limit_tension(&self, point: &mut PointBatch) {

@@ -47,6 +47,8 @@ pub trait Law: Listed {
     const ASKS_IDENTITY: bool = false;
     /// True if damage takes a share of the law's own strength, and what has failed keeps friction.
     const KEEPS_FRICTION: bool = false;
+    /// True if a law of failure adds the pressure of bulking to that of the equation of state.
+    const BULKS: bool = false;
     /// True if a strength bounds the tension.
     const BOUNDS_TENSION: bool = false;
 
@@ -170,8 +172,29 @@ pub struct Conditions {
     /// Logarithmic derivative of the flow stress by the plastic strain, with the heat of the flow, where
     /// a law of failure asks for it.
     pub hardening: Lanes,
+    /// Strengths at the pressure of the point, of a law that has two.
+    pub curves: Curves,
     /// Options of the failure.
     pub options: FailureOptions,
+}
+
+/// Strengths of intact and of fractured matter.
+#[derive(Debug, Clone, Copy)]
+pub struct Curves {
+    /// Pressure above the largest tension, over the law's own scale.
+    pub above: Lanes,
+    /// Intact strength (Pa), at first without bound.
+    pub intact: Lanes,
+    /// Fractured strength (Pa), at first without bound.
+    pub fractured: Lanes,
+}
+
+impl Curves {
+    /// Strength (Pa) of lane k at a damage.
+    #[inline(always)]
+    pub(super) fn at(&self, k: usize, damage: f64) -> f64 {
+        (1.0 - damage) * self.intact[k] + damage * self.fractured[k]
+    }
 }
 
 impl Conditions {
@@ -196,6 +219,11 @@ impl Conditions {
             kept: [1.0; LANES],
             plastic_increment: [0.0; LANES],
             hardening: [0.0; LANES],
+            curves: Curves {
+                above: [0.0; LANES],
+                intact: [f64::MAX; LANES],
+                fractured: [f64::MAX; LANES],
+            },
             options: FailureOptions::DEFAULT,
         }
     }

@@ -69,6 +69,17 @@ macro_rules! equations_of_state {
                 /// Its linear coefficient.
                 b: Spanned<f64> = 0.0, Any;
             }
+            /// `eos.polynomial`: polynomial in the compression.
+            polynomial: PolynomialParams => Polynomial {
+                /// Bulk modulus K₁.
+                k1: Placed<Pressure>, Positive;
+                /// Coefficient K₂ of the square.
+                k2: Placed<Pressure> = "0", Any;
+                /// Coefficient K₃ of the cube.
+                k3: Placed<Pressure> = "0", Any;
+                /// Grüneisen parameter.
+                gamma0: Spanned<f64> = 0.0, NotNegative;
+            }
             /// `eos.tait`: Tait.
             tait: TaitParams => Tait {
                 /// Coefficient B; or the sound speed.
@@ -242,6 +253,31 @@ macro_rules! strength_laws {
                 /// Exponent c in Simon's law.
                 simon_c: Spanned<f64> = 1.0, Positive;
             }
+            /// `strength.johnson_holmquist_2`: ceramics and glass, intact and fractured.
+            johnson_holmquist_2: JohnsonHolmquist2Params => JohnsonHolmquist2 {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Intact strength A.
+                a: Spanned<f64>, Positive;
+                /// Fractured strength B.
+                b: Spanned<f64>, NotNegative;
+                /// Rate coefficient C.
+                c: Spanned<f64> = 0.0, NotNegative;
+                /// Exponent M of the fractured strength.
+                m: Spanned<f64>, NotNegative;
+                /// Exponent N of the intact strength.
+                n: Spanned<f64>, NotNegative;
+                /// Largest tension T.
+                max_tension: Placed<Pressure>, NotNegative;
+                /// Hugoniot elastic limit.
+                hugoniot_limit: Placed<Pressure>, Positive;
+                /// Pressure at the Hugoniot elastic limit.
+                hugoniot_pressure: Placed<Pressure>, Positive;
+                /// Largest fractured strength, over the stress at the Hugoniot elastic limit.
+                max_fractured: Spanned<f64> = 0.0, NotNegative => "no limit";
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
+            }
         }
     };
 }
@@ -306,6 +342,15 @@ macro_rules! failure_laws {
                 brittle_ductile: Placed<Pressure>, Positive;
                 /// Pressure of the brittle–plastic transition.
                 brittle_plastic: Placed<Pressure>, Positive;
+            }
+            /// `failure.johnson_holmquist_2`: damage of ceramics, and their bulking.
+            johnson_holmquist_2: JohnsonHolmquist2FailureParams => JohnsonHolmquist2Failure {
+                /// D₁.
+                d1: Spanned<f64>, NotNegative;
+                /// D₂.
+                d2: Spanned<f64>, NotNegative;
+                /// Share of the elastic energy lost that presses from then on.
+                bulking: Spanned<f64> = 1.0, NotNegative;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

@@ -129,7 +129,7 @@ fn options(
     options.effect = match &params.effect {
         Some(effect) if *effect.get_ref() == Effect::FrictionKept && !friction => {
             let title = "this strength has no friction that failed matter could keep";
-            let help = "`drucker_prager`, `mohr_coulomb`, `lundborg` and `collins` have";
+            let help = "`drucker_prager`, `mohr_coulomb`, `lundborg`, `collins` and `johnson_holmquist_2` have";
             return Err(Diagnostic::new(effect.span(), title).help(help));
         }
         Some(effect) if *effect.get_ref() == Effect::Scaled && friction => {
@@ -208,7 +208,7 @@ fn check(
     if options.scatter > 0.0 && !has_failure_strain(failure) {
         let at = (params.scatter.as_ref()).map_or_else(|| table.span(), Spanned::span);
         let title = "no failure strain that could scatter";
-        let help = "`johnson_cook`, `plastic_strain`, `ivanov` and `collins` have one";
+        let help = "a law that counts plastic strain has one, as `johnson_cook` and `ivanov`";
         return Err(Diagnostic::new(at, title).help(help));
     }
     let strengths = against_strength(failure, strength);
@@ -221,6 +221,7 @@ fn has_failure_strain(failure: &Failure) -> bool {
         || failure.plastic_strain.is_some()
         || failure.ivanov.is_some()
         || failure.collins.is_some()
+        || failure.johnson_holmquist_2.is_some()
 }
 
 /// Why a strength cannot fail that way.
@@ -233,6 +234,10 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         Some(
             "stress that fades with damage needs a strength that is elastic, or elastic and plastic",
         )
+    } else if failure.johnson_holmquist_2.is_some()
+        && !matches!(strength, Strength::JohnsonHolmquist2(_))
+    {
+        Some("`johnson_holmquist_2` damages the strength of that name alone")
     } else if strains && !strength.yields() {
         Some("a failure strain is a plastic one, and this material does not yield")
     } else {
