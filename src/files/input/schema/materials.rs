@@ -249,7 +249,7 @@ macro_rules! strength_laws {
                 /// Coefficient ξ of softening by heat.
                 softening: Spanned<f64> = 0.0, NotNegative => "none";
                 /// Pressure a in Simon's law of melting.
-                simon_a: Placed<Pressure> = "0", NotNegative => "melts at any pressure as at none";
+                simon_a: Placed<Pressure> = "0", NotNegative => "no pressure in the melting temperature";
                 /// Exponent c in Simon's law.
                 simon_c: Spanned<f64> = 1.0, Positive;
             }
