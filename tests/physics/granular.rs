@@ -3,8 +3,8 @@
 use crate::physics_support::{inline, run_with, start};
 
 /// Mean axial stress (Pa, compression positive) of the middle of a block of 20 mm between platens that close at 200 /s,
-/// from 12 us on.
-fn bears(dimension: usize, strength: &str) -> f64 {
+/// between two times (us).
+fn bears(dimension: usize, strength: &str, [from, to]: [f64; 2]) -> f64 {
     let (lower, upper, velocity) = if dimension == 2 {
         (
             "\"-10 mm\", \"-5 mm\"",
@@ -19,7 +19,7 @@ fn bears(dimension: usize, strength: &str) -> f64 {
         )
     };
     let mut s = start(inline(&format!(
-        "dimension = {dimension}\nspacing = \"0.5 mm\"\n[run]\nend_time = \"36 us\"\n\
+        "dimension = {dimension}\nspacing = \"0.5 mm\"\n[run]\nend_time = \"{to} us\"\n\
          [sph]\nform = \"corrected\"\n\
          [material.rock]\ndensity = \"2500 kg/m^3\"\n\
          eos.linear = {{ bulk_modulus = \"30 GPa\", form = \"logarithmic\" }}\n\
@@ -33,7 +33,7 @@ fn bears(dimension: usize, strength: &str) -> f64 {
     )));
     let (mut sum, mut count) = (0.0, 0.0);
     run_with(&mut s, 1.0, |s| {
-        if s.state.time < 12e-6 {
+        if s.state.time < from * 1e-6 {
             return;
         }
         for i in 0..s.particles.owned() {
@@ -51,16 +51,16 @@ const CONE: &str =
 const HEXAGON: &str = "mohr_coulomb = { shear_modulus = \"10 GPa\", cohesion = \"10 MPa\", \
     friction = 0.57735026918962576, tensile_strength = \"2 MPa\" }";
 
-fn assert_bears(dimension: usize, strength: &str, exact: f64) {
-    let found = bears(dimension, strength);
+fn assert_bears(dimension: usize, strength: &str, times: [f64; 2], exact: f64) {
+    let found = bears(dimension, strength, times);
     println!("{dimension}-D: {found} {exact}");
     assert!((found / exact - 1.0).abs() < 0.03, "{found} {exact}");
 }
 
-/// In plane strain the deviator across is lost as matter flows: `√J₂ = p = σ/2`.
+/// In plane strain the deviator across is lost as matter flows: `√J₂ = p = σ/2`. Later the block flows in bands.
 #[test]
 fn a_block_in_plane_strain_bears_what_its_friction_holds() {
-    assert_bears(2, CONE, 2.0 * 10e6 / (1.0 - 0.6));
+    assert_bears(2, CONE, [14.0, 26.0], 2.0 * 10e6 / (1.0 - 0.6));
 }
 
 /// Drucker and Prager's cone: with free sides `√J₂ = q/√3` and `p = q/3`. Mohr and Coulomb: `q = 2 c cos φ/(1 − sin φ)`.
@@ -69,6 +69,6 @@ fn a_block_in_plane_strain_bears_what_its_friction_holds() {
 #[ignore = "slow: 16,000 particles for 800 steps, twice"]
 fn a_block_bears_what_its_friction_holds() {
     let root_3 = 3.0_f64.sqrt();
-    assert_bears(3, CONE, root_3 * 10e6 / (1.0 - 0.6 / root_3));
-    assert_bears(3, HEXAGON, root_3 * 10e6 / 0.5);
+    assert_bears(3, CONE, [12.0, 36.0], root_3 * 10e6 / (1.0 - 0.6 / root_3));
+    assert_bears(3, HEXAGON, [12.0, 36.0], root_3 * 10e6 / 0.5);
 }
