@@ -11,6 +11,8 @@ mod drucker_prager;
 mod elastic;
 mod failure;
 mod grady_kipp;
+mod holmquist_johnson_cook;
+mod holmquist_johnson_cook_failure;
 mod ivanov;
 mod jaumann;
 mod johnson_cook;
@@ -31,6 +33,7 @@ mod viscous;
 mod von_mises;
 
 use super::declare::Listed;
+use batch::strain_rates_squared;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
 pub use collins::Collins;
 pub use collins_failure::CollinsFailure;
@@ -41,6 +44,8 @@ pub use failure::FAILED;
 use failure::failure_laws;
 pub use failure::{Effect, FailureOptions, Molten, viscous_speed};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
+pub use holmquist_johnson_cook::HolmquistJohnsonCook;
+pub use holmquist_johnson_cook_failure::HolmquistJohnsonCookFailure;
 pub use ivanov::Ivanov;
 pub use johnson_cook::JohnsonCook;
 pub use johnson_cook_failure::{Coupling, JohnsonCookFailure, RateForm};
@@ -131,6 +136,8 @@ strength_laws! {
     collins: Collins;
     /// Strength of ceramics, intact and fractured.
     johnson_holmquist_2: JohnsonHolmquist2;
+    /// Strength of concrete.
+    holmquist_johnson_cook: HolmquistJohnsonCook;
 }
 
 // The key in the input, and the law. A material may have all of them; they act in this order.
@@ -149,6 +156,8 @@ failure_laws! {
     collins: CollinsFailure;
     /// Damage of ceramics, and their bulking.
     johnson_holmquist_2: JohnsonHolmquist2Failure;
+    /// Damage of concrete.
+    holmquist_johnson_cook: HolmquistJohnsonCookFailure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

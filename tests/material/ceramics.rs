@@ -1,10 +1,10 @@
-//! Ceramics of Johnson and Holmquist: single elements in uniaxial strain, bulking, strength at rates; the polynomial
-//! equation of state.
+//! Ceramics of Johnson and Holmquist: single elements in uniaxial strain, bulking, strength at rates; concrete of Holmquist,
+//! Johnson and Cook; the polynomial equation of state.
 
 use crate::support::{batch, equivalent, material, step, stress};
 use material::{
-    Effect, Eos, JohnsonHolmquist2, JohnsonHolmquist2Failure, LANES, Material, PointBatch,
-    Polynomial, Strength, library,
+    Effect, Eos, HolmquistJohnsonCook, HolmquistJohnsonCookFailure, JohnsonHolmquist2,
+    JohnsonHolmquist2Failure, LANES, Material, PointBatch, Polynomial, Strength, library,
 };
 use nalgebra::{Matrix3, Vector3};
 
@@ -236,4 +236,70 @@ fn the_polynomial_is_its_own_slope() {
     assert!((eos.at(2530.0, 2530.0 * 0.95, 0.0).pressure / (-0.05 * 45.4e9) - 1.0).abs() < 1e-12);
     let cubic = 0.1 * 45.4e9 - 0.01 * 138e9 + 0.001 * 290e9;
     assert!((eos.at(2530.0, 2530.0 * 1.1, 0.0).pressure / cubic - 1.0).abs() < 1e-12);
+}
+
+/// Concrete of 48 MPa of Holmquist, Johnson & Cook (1993), without pores: strength at pressures, rates and damages, its
+/// limit, failure strains, and what is left of it.
+#[test]
+fn concrete_has_the_strength_of_its_card() {
+    let eos = Eos::Polynomial(Polynomial {
+        k1: 85e9,
+        k2: 0.0,
+        k3: 0.0,
+        gamma0: 0.0,
+    });
+    let strength = Strength::HolmquistJohnsonCook(HolmquistJohnsonCook {
+        shear_modulus: 14.86e9,
+        a: 0.79,
+        b: 1.6,
+        c: 0.007,
+        n: 0.61,
+        compressive_strength: 48e6,
+        max_tension: 4e6,
+        max_strength: 7.0,
+        reference_rate: 1.0,
+    });
+    let mut concrete = material(2440.0, eos, strength);
+    concrete.failure.options.effect = Effect::FrictionKept;
+    for p in [-2e6, 0.0, 10e6, 100e6, 1e9] {
+        for rate in [0.1, 1e4] {
+            for damage in [0.0, 0.4, 1.0] {
+                let fast = 1.0 + 0.007 * libm::log(f64::max(rate, 1.0));
+                let share = 0.79 * (1.0 - damage) * (1.0 + f64::min(p, 0.0) / 4e6);
+                let power = 1.6 * libm::pow(f64::max(p, 0.0) / 48e6, 0.61);
+                let exact = 48e6 * f64::min((share + power) * fast, 7.0);
+                let mut points = batch(2440.0 * (1.0 + p / 85e9), 0.0);
+                points.damage = [damage; LANES];
+                let l = Matrix3::from_diagonal(&Vector3::new(-rate, 0.5 * rate, 0.5 * rate));
+                step(&concrete, &mut points, &l, 0.05 / rate);
+                assert!(
+                    (equivalent(&points) - exact).abs() < 1e-6 * 48e6,
+                    "{p} {rate} {damage}"
+                );
+            }
+        }
+    }
+    let law = HolmquistJohnsonCookFailure {
+        d1: 0.04,
+        d2: 1.0,
+        least_strain: 0.01,
+    };
+    concrete.failure.holmquist_johnson_cook = Some(law);
+    assert!((law.failure_strain(52.0 / 48.0) - 0.04 * 52.0 / 48.0).abs() < 1e-15);
+    assert!((law.failure_strain(0.05) - 0.01).abs() < 1e-15);
+    // At 96 MPa: elastic up to yield, then damage by what is plastic, then the friction of what is broken.
+    let p = 96e6;
+    let mut points = batch(2440.0 * (1.0 + p / 85e9), 0.0);
+    let l = Matrix3::from_diagonal(&Vector3::new(-1e-4, 0.5e-4, 0.5e-4));
+    let mut last = 0.0;
+    for _ in 0..2000 {
+        step(&concrete, &mut points, &l, 1.0);
+        let plastic = points.plastic_strain[0];
+        let exact = f64::min(plastic / law.failure_strain(100.0 / 48.0), 1.0);
+        assert!((points.damage[0] - exact).abs() < 1e-6);
+        last = exact;
+    }
+    assert!((last - 1.0).abs() < 1e-12);
+    let friction = 48e6 * 1.6 * libm::pow(2.0, 0.61);
+    assert!((equivalent(&points) / friction - 1.0).abs() < 1e-6);
 }

@@ -18,7 +18,7 @@
 
 use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};
-use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
+use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, strain_rates_squared};
 use crate::at_least;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::elementary::{ln, pow};
@@ -143,14 +143,7 @@ impl Law for JohnsonHolmquist2 {
             // Nothing flows, whatever the strength.
             return;
         }
-        let mut rate = F64x8([0.0; LANES]);
-        for k in 0..LANES {
-            let l = |c: usize| point.velocity_gradient[c][k];
-            let third = (l(0) + l(4) + l(8)) * (1.0 / 3.0);
-            let [xx, yy, zz] = [l(0) - third, l(4) - third, l(8) - third];
-            let [xy, xz, yz] = [l(1) + l(3), l(2) + l(6), l(5) + l(7)];
-            rate.0[k] = xx * xx + yy * yy + zz * zz + 0.5 * (xy * xy + xz * xz + yz * yz);
-        }
+        let rate = F64x8(strain_rates_squared(point));
         let strengths = Strengths {
             law: self,
             pressure: &point.pressure,

@@ -278,6 +278,27 @@ macro_rules! strength_laws {
                 /// Reference strain rate.
                 reference_rate: Placed<Rate> = "1/s", Positive;
             }
+            /// `strength.holmquist_johnson_cook`: concrete.
+            holmquist_johnson_cook: HolmquistJohnsonCookParams => HolmquistJohnsonCook {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Strength A that damage takes.
+                a: Spanned<f64>, Positive;
+                /// Coefficient B of the pressure.
+                b: Spanned<f64>, NotNegative;
+                /// Rate coefficient C.
+                c: Spanned<f64> = 0.0, NotNegative;
+                /// Exponent N of the pressure.
+                n: Spanned<f64>, NotNegative;
+                /// Compressive strength.
+                compressive_strength: Placed<Pressure>, Positive;
+                /// Largest tension T.
+                max_tension: Placed<Pressure>, NotNegative;
+                /// Largest strength, over the compressive strength.
+                max_strength: Spanned<f64>, Positive;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
+            }
         }
     };
 }
@@ -351,6 +372,15 @@ macro_rules! failure_laws {
                 d2: Spanned<f64>, NotNegative;
                 /// Share of the elastic energy lost that presses from then on.
                 bulking: Spanned<f64> = 1.0, NotNegative;
+            }
+            /// `failure.holmquist_johnson_cook`: damage of concrete.
+            holmquist_johnson_cook: HolmquistJohnsonCookFailureParams => HolmquistJohnsonCookFailure {
+                /// D₁.
+                d1: Spanned<f64>, NotNegative;
+                /// D₂.
+                d2: Spanned<f64>, NotNegative;
+                /// Least failure strain.
+                least_strain: Spanned<f64> = 0.01, Positive;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

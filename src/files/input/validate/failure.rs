@@ -129,7 +129,7 @@ fn options(
     options.effect = match &params.effect {
         Some(effect) if *effect.get_ref() == Effect::FrictionKept && !friction => {
             let title = "this strength has no friction that failed matter could keep";
-            let help = "`drucker_prager`, `mohr_coulomb`, `lundborg`, `collins` and `johnson_holmquist_2` have";
+            let help = "strengths that grow with pressure have, as `drucker_prager` and `collins`";
             return Err(Diagnostic::new(effect.span(), title).help(help));
         }
         Some(effect) if *effect.get_ref() == Effect::Scaled && friction => {
@@ -222,6 +222,7 @@ fn has_failure_strain(failure: &Failure) -> bool {
         || failure.ivanov.is_some()
         || failure.collins.is_some()
         || failure.johnson_holmquist_2.is_some()
+        || failure.holmquist_johnson_cook.is_some()
 }
 
 /// Why a strength cannot fail that way.
@@ -238,6 +239,10 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         && !matches!(strength, Strength::JohnsonHolmquist2(_))
     {
         Some("`johnson_holmquist_2` damages the strength of that name alone")
+    } else if failure.holmquist_johnson_cook.is_some()
+        && !matches!(strength, Strength::HolmquistJohnsonCook(_))
+    {
+        Some("`holmquist_johnson_cook` damages the strength of that name alone")
     } else if strains && !strength.yields() {
         Some("a failure strain is a plastic one, and this material does not yield")
     } else {
