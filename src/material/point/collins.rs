@@ -22,7 +22,7 @@
 //! Below zero pressure the curves go on as straight lines. Stress returns at constant pressure.
 //! Tension ends at `−Y_i0/μ_i`, before what failure leaves of it.
 
-use super::drucker_prager::{ROOT_3, limit_at_tip, loosen};
+use super::drucker_prager::{ROOT_3, limit_at_tip};
 use super::lundborg::{contradiction, curve};
 use super::radial_return::to_flow_stress;
 use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
@@ -90,33 +90,6 @@ impl Collins {
     }
 }
 
-impl Collins {
-    /// Softening by heat.
-    #[inline(never)]
-    fn heat(&self, point: &PointBatch, now: &mut Conditions) {
-        let Some(melting) = now.thermal.melting_temperature else {
-            return;
-        };
-        if self.softening == 0.0 {
-            return;
-        }
-        let (mut temperature, mut pressure) = (F64x8([0.0; LANES]), F64x8([0.0; LANES]));
-        for k in 0..LANES {
-            temperature.0[k] = at_least(now.temperature[k], COLD);
-            pressure.0[k] = at_least(point.pressure[k], 0.0);
-        }
-        let pressed = self.simon_a > 0.0 && pressure.0 != [0.0; LANES];
-        let softening = Softening {
-            law: self,
-            melting,
-            temperature,
-            pressure,
-            pressed,
-        };
-        now.softening = instructions().run(softening).0;
-    }
-}
-
 /// `tanh[ξ (T_m/T − 1)]` of eight points.
 struct Softening<'a> {
     law: &'a Collins,
@@ -181,16 +154,31 @@ impl Law for Collins {
         limit_at_tip(point, self.cohesion, self.friction);
     }
 
-    #[inline(always)]
+    /// Softening by heat.
+    #[inline(never)]
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        self.heat(point, now);
-        for k in 0..LANES {
-            let (damage, soft) = (point.damage[k], now.softening[k]);
-            let strength = self.shear_strength(point.pressure[k], damage);
-            let cohesion = self.cohesion * (1.0 - damage);
-            loosen(now, k, [soft * strength, soft * cohesion]);
+        let Some(melting) = now.thermal.melting_temperature else {
+            return;
+        };
+        if self.softening == 0.0 {
+            return;
         }
+        let (mut temperature, mut pressure) = (F64x8([0.0; LANES]), F64x8([0.0; LANES]));
+        for k in 0..LANES {
+            temperature.0[k] = at_least(now.temperature[k], COLD);
+            pressure.0[k] = at_least(point.pressure[k], 0.0);
+        }
+        let pressed = self.simon_a > 0.0 && pressure.0 != [0.0; LANES];
+        let softening = Softening {
+            law: self,
+            melting,
+            temperature,
+            pressure,
+            pressed,
+        };
+        now.softening = instructions().run(softening).0;
     }
+
     #[inline(always)]
     fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
         jaumann::deform(point, now);

@@ -68,15 +68,6 @@ pub(super) fn limit_at_tip(point: &mut PointBatch, cohesion: f64, friction: f64)
     }
 }
 
-/// Matter of lane k without shear strength (Pa) has no stiffness in shear where it has no cohesion (Pa) left, as torn
-/// sand and melt. Where it has, as at the tip of a cone, it flows until damage takes it.
-#[inline(always)]
-pub(super) fn loosen(now: &mut Conditions, k: usize, [strength, cohesion]: [f64; 2]) {
-    if strength <= 0.0 && cohesion <= 0.0 {
-        now.shear_modulus[k] = 0.0;
-    }
-}
-
 impl Law for DruckerPrager {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
     const FOLLOWS_STATE: bool = true;
@@ -102,15 +93,6 @@ impl Law for DruckerPrager {
     #[inline(always)]
     fn limit_tension(&self, point: &mut PointBatch, _softens: bool) {
         limit_at_tip(point, self.cohesion, self.friction);
-    }
-
-    #[inline(always)]
-    fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        for k in 0..LANES {
-            let damage = point.damage[k];
-            let strength = self.shear_strength(point.pressure[k], damage);
-            loosen(now, k, [strength, self.cohesion * (1.0 - damage)]);
-        }
     }
 
     #[inline(always)]

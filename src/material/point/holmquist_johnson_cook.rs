@@ -16,7 +16,6 @@
 //! Stress returns at constant pressure, and tension ends at T, of which
 //! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. How pores crush is no part of this law.
 
-use super::drucker_prager::loosen;
 use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};
 use super::{Conditions, LANES, Law, PointBatch, jaumann, strain_rates_squared};
@@ -132,11 +131,6 @@ impl Law for HolmquistJohnsonCook {
             intact: intact.0,
             fractured: fractured.0,
         };
-        for k in 0..LANES {
-            let damage = point.damage[k];
-            let cohesion = self.max_tension * (1.0 - damage);
-            loosen(now, k, [now.curves.at(k, damage), cohesion]);
-        }
     }
 
     #[inline(always)]

@@ -16,7 +16,6 @@
 //! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. Damage and the pressure by bulking are those of
 //! [`JohnsonHolmquist2Failure`](super::JohnsonHolmquist2Failure), which reads the two strengths from the [`Conditions`].
 
-use super::drucker_prager::loosen;
 use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};
 use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, strain_rates_squared};
@@ -156,11 +155,6 @@ impl Law for JohnsonHolmquist2 {
             intact: intact.0,
             fractured: fractured.0,
         };
-        for k in 0..LANES {
-            let damage = point.damage[k];
-            let cohesion = self.max_tension * (1.0 - damage);
-            loosen(now, k, [now.curves.at(k, damage), cohesion]);
-        }
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@
 //! Stress returns at constant pressure. Tension ends where the strength does. Damage takes its
 //! share of Y₀, `(1 − D) Y₀`, and friction stays.
 
-use super::drucker_prager::{ROOT_3, limit_at_tip, loosen};
+use super::drucker_prager::{ROOT_3, limit_at_tip};
 use super::radial_return::to_flow_stress;
 use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
@@ -83,15 +83,6 @@ impl Law for Lundborg {
     #[inline(always)]
     fn limit_tension(&self, point: &mut PointBatch, _softens: bool) {
         limit_at_tip(point, self.cohesion, self.friction);
-    }
-
-    #[inline(always)]
-    fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        for k in 0..LANES {
-            let damage = point.damage[k];
-            let strength = self.shear_strength(point.pressure[k], damage);
-            loosen(now, k, [strength, self.cohesion * (1.0 - damage)]);
-        }
     }
 
     #[inline(always)]

@@ -16,7 +16,6 @@
 //! The pressure stays above that of the tip, `−min(c cot φ, T)`. Damage takes its share of c and of
 //! T, `1 − D`.
 
-use super::drucker_prager::loosen;
 use super::radial_return::equivalent_stress;
 use super::{Conditions, LANES, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
@@ -104,16 +103,6 @@ impl Law for MohrCoulomb {
         let tip = self.tip();
         for k in 0..LANES {
             point.pressure[k] = at_least(point.pressure[k], tip);
-        }
-    }
-
-    #[inline(always)]
-    fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        let angle = self.angle();
-        for k in 0..LANES {
-            let damage = point.damage[k];
-            let strength = self.inner(angle, point.pressure[k], damage);
-            loosen(now, k, [strength, self.cohesion * (1.0 - damage)]);
         }
     }
 
