@@ -238,7 +238,7 @@ fn the_polynomial_is_its_own_slope() {
     assert!((eos.at(2530.0, 2530.0 * 1.1, 0.0).pressure / cubic - 1.0).abs() < 1e-12);
 }
 
-/// Concrete of 48 MPa of Holmquist, Johnson & Cook (1993), without pores: strength at pressures, rates and damages, its
+/// Concrete of 48 `MPa` of Holmquist, Johnson & Cook (1993), without pores: strength at pressures, rates and damages, its
 /// limit, failure strains, and what is left of it.
 #[test]
 fn concrete_has_the_strength_of_its_card() {

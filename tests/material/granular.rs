@@ -61,9 +61,9 @@ const ROCK: Collins = Collins {
 };
 
 /// Rock with a law of failure, which keeps friction.
-fn failing(strength: Strength, laws: Failure) -> Material {
+fn failing(strength: Strength, laws: &Failure) -> Material {
     let mut rock = of(strength);
-    rock.failure = laws;
+    rock.failure = *laws;
     rock.failure.options.effect = Effect::FrictionKept;
     rock
 }
@@ -277,6 +277,9 @@ fn sand_bears_friction_and_no_tension() {
     }
 }
 
+/// A shear strength (Pa) by pressure (Pa).
+type Curve = fn(f64) -> f64;
+
 /// Rock that has failed has the friction of its pieces and no tension.
 #[test]
 fn failed_rock_keeps_friction() {
@@ -287,7 +290,7 @@ fn failed_rock_keeps_friction() {
         }),
         ..Failure::NONE
     };
-    let strengths: [(Strength, fn(f64) -> f64); 3] = [
+    let strengths: [(Strength, Curve); 3] = [
         (Strength::Collins(ROCK), |p| 0.8 * p),
         (Strength::DruckerPrager(CONE), |p| 0.6 * p),
         (Strength::Lundborg(CURVE), |p| {
@@ -295,7 +298,7 @@ fn failed_rock_keeps_friction() {
         }),
     ];
     for (strength, damaged) in strengths {
-        let rock = failing(strength, laws);
+        let rock = failing(strength, &laws);
         for p in [10e6, 100e6, 500e6] {
             let mut points = pressed(&rock, p);
             shear(&rock, &mut points, &diagonal(-0.2, 0.1, 0.1), 400);
@@ -311,7 +314,7 @@ fn failed_rock_keeps_friction() {
         }
     }
     // Without friction it is a fluid, as other materials are.
-    let mut rock = failing(Strength::Collins(ROCK), laws);
+    let mut rock = failing(Strength::Collins(ROCK), &laws);
     rock.failure.options.effect = Effect::StrengthLost;
     let mut points = pressed(&rock, 100e6);
     shear(&rock, &mut points, &diagonal(-0.2, 0.1, 0.1), 400);
@@ -323,7 +326,7 @@ fn failed_rock_keeps_friction() {
 fn damage_joins_the_curves() {
     for damage in [0.0, 0.3, 0.5, 1.0] {
         let p = 150e6;
-        let rock = failing(Strength::Collins(ROCK), Failure::NONE);
+        let rock = failing(Strength::Collins(ROCK), &Failure::NONE);
         let mut points = pressed(&rock, p);
         points.damage = [damage; LANES];
         shear(&rock, &mut points, &diagonal(-0.2, 0.1, 0.1), 50);
@@ -446,7 +449,7 @@ fn rock_tears_by_its_fracture_energy() {
         ..Failure::NONE
     };
     laws.options.fracture_energy = 50.0;
-    let rock = failing(Strength::Collins(ROCK), laws);
+    let rock = failing(Strength::Collins(ROCK), &laws);
     let size: f64 = 1e-3;
     let mut points = pressed(&rock, 0.0);
     points.mass = [RHO * size * size * size; LANES];
@@ -484,7 +487,7 @@ fn cracks_and_tension_go_with_friction() {
         ..Failure::NONE
     };
     for laws in [cracks, tension] {
-        let rock = failing(Strength::Collins(ROCK), laws);
+        let rock = failing(Strength::Collins(ROCK), &laws);
         let mut points = pressed(&rock, 0.0);
         points.mass = [RHO * 1e-9; LANES];
         let (mut most, dt) = (0.0_f64, 1e-9);
