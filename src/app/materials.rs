@@ -52,7 +52,7 @@ pub fn run(args: &MaterialsArgs) -> u8 {
 /// All materials, one in a line.
 fn list() -> String {
     let mut text = format!(
-        "{:<32} {:>9}  {:<14} {:<16} what it is\n",
+        "{:<32} {:>9}  {:<14} {:<20} what it is\n",
         "name", "kg/m^3", "eos", "strength"
     );
     for name in library::names() {
@@ -62,7 +62,7 @@ fn list() -> String {
         let constants = material.constants();
         let _ = writeln!(
             text,
-            "{name:<32} {:>9}  {:<14} {:<16} {}",
+            "{name:<32} {:>9}  {:<14} {:<20} {}",
             material.reference_density,
             law(&constants, "eos"),
             law(&constants, "strength"),

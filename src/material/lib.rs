@@ -19,7 +19,7 @@ pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};
 pub use eos::{
     Burn, Eos, EquationOfState, Grid, IdealGas, Jwl, Linear, LinearForm, MieGruneisen, Murnaghan,
-    PointResponse, Table, Tait, Tillotson, UNLIT,
+    PointResponse, Polynomial, Table, Tait, Tillotson, UNLIT,
 };
 pub use point::*;
 pub use porosity::{
@@ -208,7 +208,7 @@ impl Material {
             damage: [damage; LANES],
             ..PointBatch::ZERO
         };
-        self.failure.limit_tension(&mut point);
+        self.limit_tension(&mut point);
         let limited = point.pressure[0];
         let matter = if limited > pressure {
             self.torn_density(matter, specific_energy, limited * alpha)
@@ -343,8 +343,15 @@ impl Material {
             damage: *damage,
             ..PointBatch::ZERO
         };
-        self.failure.limit_tension(&mut point);
+        self.limit_tension(&mut point);
         point.pressure
+    }
+
+    /// Bounds the tension: that of the strength, and what failure leaves of it.
+    #[inline(always)]
+    fn limit_tension(&self, point: &mut PointBatch) {
+        self.strength.limit_tension(point);
+        self.failure.limit_tension(point);
     }
 
     /// Specific energy (J/kg) at a density (kg/m³) and temperature (K) of matter without damage, if
@@ -405,8 +412,9 @@ impl Material {
     #[inline(always)]
     fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let rho0 = self.reference_density;
-        if ALL && self.failure.follows_state() {
-            point::limit_expansion(batch, rho0);
+        let torn = self.strength.bounds_tension();
+        if ALL && (torn || self.failure.follows_state()) {
+            point::limit_expansion(batch, rho0, torn);
         }
         let before = [batch.distension, batch.compaction];
         let (response, shares) = match (&self.porosity, &self.eos) {
@@ -418,6 +426,10 @@ impl Material {
             }
         };
         batch.pressure = response.pressure;
+        if ALL {
+            self.failure.bulk(batch);
+            self.strength.limit_tension(batch);
+        }
         self.failure.limit_tension(batch);
         let moduli = [self.strength.shear_modulus(), self.bulk_modulus()];
         let mut now = Conditions::new(dt, rho0, moduli);

@@ -4,14 +4,24 @@
 //! its rows in `input/schema/materials.rs` its constants.
 
 mod batch;
+mod collins;
+mod collins_failure;
 mod damage;
+mod drucker_prager;
 mod elastic;
 mod failure;
 mod grady_kipp;
+mod holmquist_johnson_cook;
+mod holmquist_johnson_cook_failure;
+mod ivanov;
 mod jaumann;
 mod johnson_cook;
 mod johnson_cook_failure;
+mod johnson_holmquist_2;
+mod johnson_holmquist_2_failure;
 mod law;
+mod lundborg;
+mod mohr_coulomb;
 mod neo_hookean;
 mod plastic_strain;
 mod principal_stress;
@@ -23,17 +33,28 @@ mod viscous;
 mod von_mises;
 
 use super::declare::Listed;
+use batch::strain_rates_squared;
 pub use batch::{LANES, Lanes, PointBatch, PointField};
+pub use collins::Collins;
+pub use collins_failure::CollinsFailure;
 pub(super) use damage::limit_expansion;
+pub use drucker_prager::DruckerPrager;
 pub use elastic::Elastic;
 pub use failure::FAILED;
 use failure::failure_laws;
 pub use failure::{Effect, FailureOptions, Molten, viscous_speed};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
+pub use holmquist_johnson_cook::HolmquistJohnsonCook;
+pub use holmquist_johnson_cook_failure::HolmquistJohnsonCookFailure;
+pub use ivanov::Ivanov;
 pub use johnson_cook::JohnsonCook;
 pub use johnson_cook_failure::{Coupling, JohnsonCookFailure, RateForm};
+pub use johnson_holmquist_2::JohnsonHolmquist2;
+pub use johnson_holmquist_2_failure::JohnsonHolmquist2Failure;
 use law::strength_laws;
-pub use law::{Conditions, Contradiction, Law};
+pub use law::{Conditions, Contradiction, Curves, Law};
+pub use lundborg::Lundborg;
+pub use mohr_coulomb::MohrCoulomb;
 pub use neo_hookean::NeoHookean;
 pub use plastic_strain::PlasticStrain;
 pub use principal_stress::PrincipalStress;
@@ -83,6 +104,8 @@ macro_rules! point_fields {
             burn: Scalar, Memory;
             /// Time until a detonation lights an explosive, negative since (s).
             lighting_time: Scalar, Memory;
+            /// Pressure by bulking of what is broken (Pa).
+            bulking_pressure: Scalar, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).
@@ -111,6 +134,18 @@ strength_laws! {
     johnson_cook: JohnsonCook;
     /// Elastic–plastic with the moduli of Steinberg and Guinan.
     steinberg_guinan: SteinbergGuinan;
+    /// Strength that grows with pressure, linear up to a limit.
+    drucker_prager: DruckerPrager;
+    /// Strength that grows with pressure, by the friction in the plane of most shear.
+    mohr_coulomb: MohrCoulomb;
+    /// Strength of intact rock, which grows with pressure towards a limit.
+    lundborg: Lundborg;
+    /// Strength of rock, intact and damaged.
+    collins: Collins;
+    /// Strength of ceramics, intact and fractured.
+    johnson_holmquist_2: JohnsonHolmquist2;
+    /// Strength of concrete.
+    holmquist_johnson_cook: HolmquistJohnsonCook;
 }
 
 // The key in the input, and the law. A material may have all of them; they act in this order.
@@ -123,6 +158,14 @@ failure_laws! {
     plastic_strain: PlasticStrain;
     /// Ductile damage of Johnson and Cook.
     johnson_cook: JohnsonCookFailure;
+    /// Shear damage with a failure strain linear in the pressure.
+    ivanov: Ivanov;
+    /// Shear damage of rock that is brittle, semi-brittle or ductile.
+    collins: CollinsFailure;
+    /// Damage of ceramics, and their bulking.
+    johnson_holmquist_2: JohnsonHolmquist2Failure;
+    /// Damage of concrete.
+    holmquist_johnson_cook: HolmquistJohnsonCookFailure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

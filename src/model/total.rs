@@ -70,7 +70,7 @@ impl Case {
         pairs.any(|pair| pair.bodies.contains(&body) && joins(&pair.mode))
     }
 
-    /// True if a body flows, slowly: its material yields, and nothing meets the body faster than a
+    /// True if a body flows, slowly: its material yields, but not under its own weight as sand does, and nothing meets the body faster than a
     /// tenth of its longitudinal sound speed, as far as the case with these speeds says, and it does not deform faster
     /// either.
     #[must_use]
@@ -87,6 +87,7 @@ impl Case {
             let velocities = self.known_velocities(body);
             outside + spread <= slow && !speeds.exceed(body, &velocities, spread, slow)
         };
-        material.strength.yields() && is_slow()
+        let strength = &material.strength;
+        strength.yields() && strength.yield_stress() > 0.0 && is_slow()
     }
 }

@@ -188,6 +188,8 @@ macro_rules! owners {
                 const POROUS = 1 << 27;
                 /// Explosives.
                 const EXPLOSIVE = 1 << 28;
+                /// Materials that bulk as they break.
+                const BULKING = 1 << 31;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

@@ -140,6 +140,8 @@ particle_fields! {
     burn: Scalar,                         "",       State,    -,              IfHeld,   EXPLOSIVE;
     /// Time until a detonation lights it, negative since; zero for what is no explosive.
     lighting_time: Scalar,                "s",      State,    -,              OnDemand, EXPLOSIVE;
+    /// Pressure by bulking of what is broken.
+    bulking_pressure: Scalar,             "Pa",     State,    -,              OnDemand, BULKING;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

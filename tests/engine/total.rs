@@ -218,4 +218,10 @@ fn slow_solids_have_the_form() {
     assert_eq!(with("600 m/s", "sph.form = \"conventional\""), [false; 2]);
     assert_eq!(with("600 m/s", "sph.xsph = 0.5"), [false; 2]);
     assert_eq!(with("600 m/s", "contact.mode = \"kernel\""), [false; 2]);
+    // Sand has no shape to keep.
+    let sand = "dimension = 3\nspacing = \"1 mm\"\n[run]\nend_time = \"1 us\"\n\
+         [material.sand]\nlibrary = \"regolith\"\n\
+         [[body]]\nname = \"a\"\nmaterial = \"sand\"\n\
+         shape.box = { lower = [0, 0, 0], upper = [\"4 mm\", \"4 mm\", \"4 mm\"] }\n";
+    assert!(!inline(sand).bodies[0].total);
 }

@@ -3,6 +3,7 @@
 #[path = "../common/exact/mod.rs"]
 mod exact;
 
+mod ceramics;
 mod cracks;
 mod eos;
 mod exact_bars;
@@ -13,6 +14,7 @@ mod exact_sum;
 mod explosives;
 mod failure;
 mod fluids;
+mod granular;
 mod plastic;
 mod porosity;
 mod rubber;

@@ -227,8 +227,8 @@ fn stop_and_restart_on_other_ranks() {
     assert_same(&last(&reference), &last(&elsewhere), "restart elsewhere");
 }
 
-/// Ductile damage that softens and scatters or softens in bands alone, cracks from drawn flaws, and lost tension: mass, damage,
-/// flaws and fragments on any ranks, and through restarts in the middle of the break-up.
+/// Ductile damage that softens and scatters or softens in bands alone, cracks from drawn flaws, lost tension, rock that tears
+/// and keeps friction, and ceramics that bulk: mass, damage, flaws and fragments on any ranks, and through restarts in the middle of the break-up.
 #[test]
 #[ignore = "slow"]
 fn failure_on_any_ranks_and_through_restarts() {
@@ -241,6 +241,12 @@ fn failure_on_any_ranks_and_through_restarts() {
     let tension = "material.aluminium.failure={ principal_stress.limit = \"1 GPa\", effect = \"tension_lost\" }";
     let elastic = "material.aluminium.strength={ elastic = { shear_modulus = \"28.6 GPa\" } }";
     let yielding = "material.aluminium.strength={ von_mises = { shear_modulus = \"28.6 GPa\", yield_stress = \"0.26 GPa\" } }";
+    let rock = "material.aluminium.strength={ collins = { shear_modulus = \"28.6 GPa\", cohesion = \"0.2 GPa\", friction = 1.2, \
+        max_strength = \"1.5 GPa\", damaged_friction = 0.6 } }";
+    let shear = "material.aluminium.failure={ ivanov = {}, principal_stress.limit = \"0.5 GPa\", fracture_energy = \"10 kJ/m^2\" }";
+    let ceramic = "material.aluminium.strength={ johnson_holmquist_2 = { shear_modulus = \"28.6 GPa\", a = 0.93, b = 0.31, m = 0.6, \
+        n = 0.6, max_tension = \"0.2 GPa\", hugoniot_limit = \"2.8 GPa\", hugoniot_pressure = \"1.46 GPa\" } }";
+    let bulking = "material.aluminium.failure={ johnson_holmquist_2 = { d1 = 0.005, d2 = 1 } }";
     let fields = |names: &str| format!("output.fields=[\"damage\", \"failure_energy\", {names}]");
     let all = [
         (
@@ -261,6 +267,18 @@ fn failure_on_any_ranks_and_through_restarts() {
             tension,
             yielding,
             fields("\"deviatoric_stress\""),
+        ),
+        (
+            "rock",
+            shear,
+            rock,
+            fields("\"failure_onset\", \"plastic_strain\""),
+        ),
+        (
+            "ceramic",
+            bulking,
+            ceramic,
+            fields("\"bulking_pressure\", \"plastic_strain\""),
         ),
     ];
     each(&all, |(name, failure, strength, shown)| {

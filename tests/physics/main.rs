@@ -30,6 +30,7 @@ mod failure;
 mod flyer;
 mod friction;
 mod gas;
+mod granular;
 mod hit_bar;
 mod hole;
 mod options;

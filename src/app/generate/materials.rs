@@ -37,7 +37,7 @@ One metal has several names, which differ in what they know:
 | `aluminium-6061-steinberg-guinan` | modulus and yield stress that grow with pressure | strain rates above some 10⁵/s |
 | `aluminium-tillotson` | constant yield stress, an equation of state with vapour | impacts that vaporise material, above some 10 km/s |
 
-Only the `-ductile` materials fail by themselves. Debris that never fails holds together as long as it can: add `failure.spall` or another
+Of metals only the `-ductile` ones fail by themselves; rock, ice and ceramics do, and [keep friction](../theory/granular.md). Debris that never fails holds together as long as it can: add `failure.spall` or another
 [law](../theory/failure.md) to whatever breaks.
 
 The formulas stand in [Materials](../theory/materials.md), all keys in the [input reference](input-reference.md). `whipple materials NAME`

@@ -240,7 +240,8 @@ impl<'a> MaterialUpdate<'a> {
                 after: &after,
                 shear_modulus: self.materials[own].shear_modulus(),
                 yield_stress: self.materials[own].strength.yield_stress(),
-                limits_tension: self.materials[own].failure.spall.is_some(),
+                limits_tension: self.materials[own].failure.spall.is_some()
+                    || self.materials[own].strength.bounds_tension(),
                 lanes,
                 particles: slot,
                 indices: &cluster.receivers,

@@ -221,11 +221,8 @@ fn plastic_work(before: &PointBatch, after: &PointBatch, k: usize) -> f64 {
     if strain == 0.0 {
         return 0.0;
     }
-    let held = if after.damage[k] >= FAILED {
-        before
-    } else {
-        after
-    };
+    let fails = after.damage[k] >= FAILED && before.damage[k] < FAILED;
+    let held = if fails { before } else { after };
     let s = |c: usize| held.deviatoric_stress[c][k];
     let normal = s(0) * s(0) + s(1) * s(1) + s(2) * s(2);
     let shear = s(3) * s(3) + s(4) * s(4) + s(5) * s(5);

@@ -27,6 +27,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::FLAWS, case.fails_with("flaws")),
         (Owner::POROUS, case.is_porous()),
         (Owner::EXPLOSIVE, case.is_explosive()),
+        (Owner::BULKING, case.fails_with("bulking_pressure")),
         (Owner::YIELD, case.may_yield()),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),

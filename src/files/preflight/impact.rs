@@ -142,10 +142,12 @@ fn shocks<'a>(case: &'a Case, approach: &Approach, known: &mut Known) -> Vec<Sho
 /// (h/Δp) ρ c u/N` (theory page "Smoothed particle hydrodynamics"), where nothing limits it and it counts beside the
 /// yield stress.
 fn viscous_stress(case: &Case, body: &Body, velocity: f64) -> Option<f64> {
-    if case.dimension == 1 || case.sph.form == SphForm::Corrected {
+    let material = &case.materials[body.material];
+    // What friction holds follows the pressure.
+    let by_pressure = material.strength.keeps_friction();
+    if case.dimension == 1 || case.sph.form == SphForm::Corrected || by_pressure {
         return None;
     }
-    let material = &case.materials[body.material];
     let across = super::case::thickness(body, case) / body.lattice.spacing;
     let smoothing = body.smoothing_length / body.lattice.spacing;
     let stress = 0.5 * case.sph.alpha * smoothing * impedance(material) * velocity / across;
@@ -200,6 +202,7 @@ fn keeps_its_strength(material: &Material) -> bool {
 /// Returns true for a solid that bears any tension.
 fn holds_together(material: &Material) -> bool {
     material.failure.is_none()
+        && !material.strength.bounds_tension()
         && !matches!(material.strength, Strength::None | Strength::Viscous(_))
 }
 

@@ -186,6 +186,8 @@ equations_of_state! {
     linear: Linear;
     /// Mie–Grüneisen about the Hugoniot of the reference state.
     mie_gruneisen: MieGruneisen;
+    /// Polynomial in the compression.
+    polynomial: Polynomial;
     /// Tait's law of a liquid, without heat.
     tait: Tait;
     /// Tillotson's law, from cold compression to vapour.

@@ -5,7 +5,6 @@ use crate::{Eos, Failure, Strength, Tillotson, VonMises};
 
 const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH and Spheral agree; \
      metals of Tillotson (1962), GA-3216, rocks of Benz & Asphaug (1999), Icarus 142, 5";
-const BASALT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, in the codes named above";
 const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants in Uintah, citing \
      Steinberg, UCRL-MA-106439";
 const PLAIN: &str = "no hardening";
@@ -17,13 +16,6 @@ records! {
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
-            ("", TILLOTSON),
-        ];
-    "basalt-tillotson", "basalt to vaporisation, intact rock: of constant strength, without flaws, without friction once it has failed":
-        tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [22.7e9, 3.5e9]),
-        &[
-            ("strength.von_mises.hardening_modulus", PLAIN),
-            ("strength", BASALT),
             ("", TILLOTSON),
         ];
     "granite-tillotson", "granite to vaporisation, without strength":

@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ductile` fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `ductile` and `rocks` fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -29,6 +29,7 @@ macro_rules! records {
 }
 
 mod alloys;
+mod ceramics;
 mod ductile;
 mod explosives;
 mod fluids;
@@ -38,6 +39,7 @@ mod metals;
 mod paper;
 mod polymers;
 mod porous;
+mod rocks;
 
 /// Parts from which a record makes its material.
 struct Parts {
@@ -53,6 +55,7 @@ struct Parts {
 fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
+        ceramics::RECORDS,
         ductile::RECORDS,
         explosives::RECORDS,
         fluids::RECORDS,
@@ -61,6 +64,7 @@ fn records() -> Vec<&'static Record> {
         paper::RECORDS,
         polymers::RECORDS,
         porous::RECORDS,
+        rocks::RECORDS,
     ];
     let mut all: Vec<&Record> = lists.into_iter().flatten().collect();
     all.sort_by_key(|record| record.name);

@@ -57,6 +57,20 @@ macro_rules! point_batch {
 }
 point_fields!(point_batch);
 
+/// Squares of the deviatoric rates of deformation, `d':d'` (1/s²).
+#[inline(always)]
+pub(super) fn strain_rates_squared(point: &PointBatch) -> Lanes {
+    let mut squares = [0.0; LANES];
+    for k in 0..LANES {
+        let l = |c: usize| point.velocity_gradient[c][k];
+        let third = (l(0) + l(4) + l(8)) * (1.0 / 3.0);
+        let [xx, yy, zz] = [l(0) - third, l(4) - third, l(8) - third];
+        let [xy, xz, yz] = [l(1) + l(3), l(2) + l(6), l(5) + l(7)];
+        squares[k] = xx * xx + yy * yy + zz * zz + 0.5 * (xy * xy + xz * xz + yz * yz);
+    }
+    squares
+}
+
 /// The values of a batch in one field, one lane of them at a time.
 pub trait PointField {
     /// Value of one point.

@@ -46,11 +46,11 @@ use numerics::principal::principal;
 /// Least density of failed matter, over that of the reference state.
 const SPRAY: f64 = 0.1;
 
-/// Failed matter does not expand beyond spray.
+/// Failed matter does not expand beyond spray, nor does any whose strength bounds the tension (`torn`).
 #[inline(always)]
-pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
+pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64, torn: bool) {
     for k in 0..LANES {
-        if point.damage[k] >= FAILED {
+        if torn || point.damage[k] >= FAILED {
             point.density[k] = at_least(point.density[k], SPRAY * reference_density);
         }
     }
@@ -59,7 +59,7 @@ pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64) {
 /// Failed matter bears no tension, damaged matter what damage leaves of it.
 #[inline(always)]
 pub(super) fn limit_tension(point: &mut PointBatch, options: &FailureOptions) {
-    if options.effect == Effect::Scaled {
+    if options.fades() {
         for k in 0..LANES {
             if point.pressure[k] < 0.0 {
                 point.pressure[k] *= 1.0 - options.taken(point.damage[k]);
@@ -81,7 +81,7 @@ pub(super) fn limit_tension(point: &mut PointBatch, options: &FailureOptions) {
 }
 
 /// Failed matter has no stiffness in shear and no flow stress, so that no plastic strain is counted;
-/// damaged matter has what damage leaves of both.
+/// damaged matter has what damage leaves of both. A strength that keeps friction takes its own share.
 #[inline(always)]
 pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
     if now.options.effect == Effect::TensionLost {
@@ -90,6 +90,9 @@ pub(super) fn soften(point: &PointBatch, now: &mut Conditions) {
     for k in 0..LANES {
         let kept = 1.0 - now.options.taken(point.damage[k]);
         now.kept[k] = kept;
+        if now.options.effect == Effect::FrictionKept {
+            continue;
+        }
         now.shear_modulus[k] *= kept;
         now.softening[k] *= kept;
     }
@@ -144,7 +147,12 @@ pub(super) fn open_cracks(point: &mut PointBatch, now: &Conditions) {
         let normal = s(0) * l(0) + s(1) * l(4) + s(2) * l(8);
         let shear = s(3) * (l(1) + l(3)) + s(4) * (l(2) + l(6)) + s(5) * (l(5) + l(7));
         let tension = at_least(-point.pressure[k], 0.0);
-        let power = normal + shear + tension * (l(0) + l(4) + l(8));
+        let mut shape = normal + shear;
+        if now.options.effect == Effect::FrictionKept {
+            // Shear has not faded. Under pressure it is friction, which opens nothing.
+            shape *= if tension > 0.0 { now.kept[k] } else { 0.0 };
+        }
+        let power = shape + tension * (l(0) + l(4) + l(8));
         spend(point, k, power, now);
     }
 }
@@ -171,6 +179,7 @@ pub(super) fn let_go(
         lose_tension(point, now, bulk_modulus);
         return;
     }
+    let keeps_friction = now.options.effect == Effect::FrictionKept;
     for k in 0..LANES {
         let taken = now.options.taken(point.damage[k]);
         if taken <= 0.0 {
@@ -185,6 +194,7 @@ pub(super) fn let_go(
             let of_volume = tension * tension / (2.0 * bulk_modulus[k] * (1.0 - had));
             let of_shape = match now.shear_modulus[k] {
                 0.0 => 0.0,
+                _ if keeps_friction => 0.0,
                 g => square / (4.0 * g),
             };
             let share = (taken - had) / (1.0 - had);
@@ -197,11 +207,15 @@ pub(super) fn let_go(
         } else {
             0.0
         };
-        for component in s.iter_mut() {
-            component[k] *= left;
-        }
         if p < 0.0 {
             point.pressure[k] = if left == 0.0 { 0.0 } else { p * left };
+        }
+        if keeps_friction {
+            // Shear follows by the next return to the yield surface, which heats.
+            continue;
+        }
+        for component in s.iter_mut() {
+            component[k] *= left;
         }
         now.shear_modulus[k] *= left;
     }

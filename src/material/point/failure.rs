@@ -35,6 +35,9 @@ pub enum Effect {
     Scaled,
     /// Tension alone, once damage is one: its largest principal stresses are zero at most.
     TensionLost,
+    /// Tension, which scales with `1 − D`, and cohesion: shear is that of the damaged curve of the
+    /// strength, under pressure.
+    FrictionKept,
 }
 
 impl Effect {
@@ -45,6 +48,7 @@ impl Effect {
             Self::StrengthLost => "strength_lost",
             Self::Scaled => "scaled",
             Self::TensionLost => "tension_lost",
+            Self::FrictionKept => "friction_kept",
         }
     }
 }
@@ -107,13 +111,20 @@ impl FailureOptions {
         self.fracture_energy > 0.0
     }
 
-    /// Share of shear and tension that damage takes.
+    /// True if tension fades as damage grows.
+    #[inline(always)]
+    #[must_use]
+    pub fn fades(&self) -> bool {
+        matches!(self.effect, Effect::Scaled | Effect::FrictionKept)
+    }
+
+    /// Share of tension that damage takes, and of shear if friction does not stay.
     #[inline(always)]
     #[must_use]
     pub fn taken(&self, damage: f64) -> f64 {
         if damage >= FAILED {
             1.0
-        } else if self.effect == Effect::Scaled {
+        } else if self.fades() {
             damage
         } else {
             0.0
@@ -265,6 +276,16 @@ macro_rules! failure_laws {
             #[inline(always)]
             pub(in crate) fn follows_state(&self) -> bool {
                 false $( || $law::FOLLOWS_STATE && self.$key.is_some_and(|law| law.follows_state()) )+
+            }
+
+            /// Adds the pressure of bulking to that of the equation of state.
+            #[inline(always)]
+            pub(in crate) fn bulk(&self, point: &mut PointBatch) {
+                if false $( || $law::BULKS && self.$key.is_some() )+ {
+                    for k in 0..LANES {
+                        point.pressure[k] += point.bulking_pressure[k];
+                    }
+                }
             }
 
             /// Stage 1.

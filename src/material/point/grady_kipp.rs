@@ -28,7 +28,7 @@
 use serde::Deserialize;
 
 use super::failure::FAILED;
-use super::principal_tension::{largest, may_exceed};
+use super::principal_tension::{may_exceed, pull};
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::{at_least, at_most};
 use numerics::counter::exponential;
@@ -183,7 +183,7 @@ impl Law for GradyKipp {
             if !may_exceed(point, k, first * stiffness) {
                 continue;
             }
-            let strain = largest(point, k) / stiffness;
+            let strain = pull(point, k, now) / stiffness;
             if strain <= 0.0 || strain < first {
                 continue;
             }

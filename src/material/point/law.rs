@@ -27,7 +27,7 @@ pub struct Contradiction {
 ///
 /// Damage of one is failure, whichever law has brought it. At the end of stage 5 of the same step
 /// failed matter lets go of tension and shear; in all later ones it has no tension after stage 1,
-/// and neither shear modulus nor flow stress after stage 2. What damage takes before, and what
+/// and neither shear modulus nor flow stress after stage 2, unless its strength keeps friction. What damage takes before, and what
 /// failed matter keeps, is the [`FailureOptions`] of failure of the material. At last the
 /// sound speed follows. With a step of zero no stage may change the state.
 pub trait Law: Listed {
@@ -45,10 +45,21 @@ pub trait Law: Listed {
     const HAS_ONSET: bool = true;
     /// True if the law asks who and how large a particle is.
     const ASKS_IDENTITY: bool = false;
+    /// True if damage takes a share of the law's own strength, and what has failed keeps friction.
+    const KEEPS_FRICTION: bool = false;
+    /// True if a law of failure adds the pressure of bulking to that of the equation of state.
+    const BULKS: bool = false;
+    /// True if a strength bounds the tension.
+    const BOUNDS_TENSION: bool = false;
 
     /// True if the law follows the temperature with these constants.
     fn needs_temperature(&self) -> bool {
         Self::NEEDS_TEMPERATURE
+    }
+
+    /// True if the law needs the melting temperature with these constants.
+    fn needs_melting(&self) -> bool {
+        Self::NEEDS_MELTING
     }
 
     /// Fields of the point that the law changes with these constants.
@@ -165,8 +176,29 @@ pub struct Conditions {
     /// Logarithmic derivative of the flow stress by the plastic strain, with the heat of the flow, where
     /// a law of failure asks for it.
     pub hardening: Lanes,
+    /// Strengths at the pressure of the point, of a law that has two.
+    pub curves: Curves,
     /// Options of the failure.
     pub options: FailureOptions,
+}
+
+/// Strengths of intact and of fractured matter.
+#[derive(Debug, Clone, Copy)]
+pub struct Curves {
+    /// Pressure above the largest tension, over the law's own scale.
+    pub above: Lanes,
+    /// Intact strength (Pa), at first without bound.
+    pub intact: Lanes,
+    /// Fractured strength (Pa), at first without bound.
+    pub fractured: Lanes,
+}
+
+impl Curves {
+    /// Strength (Pa) of lane k at a damage.
+    #[inline(always)]
+    pub(super) fn at(&self, k: usize, damage: f64) -> f64 {
+        (1.0 - damage) * self.intact[k] + damage * self.fractured[k]
+    }
 }
 
 impl Conditions {
@@ -193,6 +225,11 @@ impl Conditions {
             crushing: [0.0; LANES],
             plastic_increment: [0.0; LANES],
             hardening: [0.0; LANES],
+            curves: Curves {
+                above: [0.0; LANES],
+                intact: [f64::MAX; LANES],
+                fractured: [f64::MAX; LANES],
+            },
             options: FailureOptions::DEFAULT,
         }
     }
@@ -255,7 +292,7 @@ macro_rules! strength_laws {
             pub fn needs_temperature(&self) -> bool {
                 match self {
                     Self::None => false,
-                    $( Self::$law(_) => $law::NEEDS_TEMPERATURE, )+
+                    $( Self::$law(law) => law.needs_temperature(), )+
                 }
             }
 
@@ -264,7 +301,7 @@ macro_rules! strength_laws {
             pub fn needs_melting(&self) -> bool {
                 match self {
                     Self::None => false,
-                    $( Self::$law(_) => $law::NEEDS_MELTING, )+
+                    $( Self::$law(law) => law.needs_melting(), )+
                 }
             }
 
@@ -292,6 +329,34 @@ macro_rules! strength_laws {
                 match self {
                     Self::None => &["deviatoric_stress"],
                     $( Self::$law(_) => $law::STATE, )+
+                }
+            }
+
+            /// True if what has failed keeps the friction that the law gives it.
+            #[must_use]
+            pub fn keeps_friction(&self) -> bool {
+                match self {
+                    Self::None => false,
+                    $( Self::$law(_) => $law::KEEPS_FRICTION, )+
+                }
+            }
+
+            /// True if the law bounds the tension.
+            #[inline(always)]
+            #[must_use]
+            pub fn bounds_tension(&self) -> bool {
+                match self {
+                    Self::None => false,
+                    $( Self::$law(_) => $law::BOUNDS_TENSION, )+
+                }
+            }
+
+            /// Stage 1, before that of failure.
+            #[inline(always)]
+            pub(in crate) fn limit_tension(&self, point: &mut PointBatch) {
+                match self {
+                    $( Self::$law(law) if $law::BOUNDS_TENSION => law.limit_tension(point, false), )+
+                    _ => {}
                 }
             }
 
@@ -433,13 +498,19 @@ mod tests {
                 let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
                 let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
                 let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
-                // A gas, burnt or not, bears no tension that it could fail by.
                 if material.porosity.is_some() {
                     named.insert("distension");
                 }
+                // Neither gas, burnt or not, nor soil bears a tension that it could fail by.
+                let mut pulled = PointBatch {
+                    pressure: [-1.0; LANES],
+                    ..PointBatch::ZERO
+                };
+                material.strength.limit_tension(&mut pulled);
+                let bears = pulled.pressure[0] < 0.0;
                 if material.burns() {
                     named.extend(["burn", "lighting_time"]);
-                } else if !matches!(material.eos, Eos::IdealGas(_)) {
+                } else if bears && !matches!(material.eos, Eos::IdealGas(_)) {
                     named.extend(material.failure.state());
                 }
                 assert_eq!(changed, named, "{name} {failure:?}");

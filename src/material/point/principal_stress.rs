@@ -2,7 +2,7 @@
 //! tension positive, exceeds the limit.
 
 use super::failure::FAILED;
-use super::principal_tension::{largest, may_exceed};
+use super::principal_tension::{may_exceed, pull};
 use super::{Conditions, LANES, Law, PointBatch};
 
 law! {
@@ -21,7 +21,9 @@ impl Law for PrincipalStress {
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
             let limit = self.limit * now.kept[k];
-            if point.damage[k] < FAILED && may_exceed(point, k, limit) && largest(point, k) > limit
+            if point.damage[k] < FAILED
+                && may_exceed(point, k, limit)
+                && pull(point, k, now) > limit
             {
                 point.damage[k] = FAILED;
             }

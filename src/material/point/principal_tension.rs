@@ -1,7 +1,8 @@
 //! The largest principal stress of a point.
 
-use super::PointBatch;
+use super::failure::Effect;
 use super::radial_return::equivalent_stress;
+use super::{Conditions, PointBatch};
 use numerics::principal::principal;
 
 /// True if the largest principal stress of lane `k` can exceed a limit (Pa): it lies at most two
@@ -21,4 +22,19 @@ pub(super) fn largest(point: &PointBatch, k: usize) -> f64 {
     let ([a, b, c], _) = principal(&s);
     let ab = if b > a { b } else { a };
     (if c > ab { c } else { ab }) - point.pressure[k]
+}
+
+/// Largest principal stress (Pa) of the material between the cracks of lane `k`, times the share of tension that damage
+/// leaves: where shear fades with tension, that of the point.
+#[inline(always)]
+pub(super) fn pull(point: &PointBatch, k: usize, now: &Conditions) -> f64 {
+    let stress = largest(point, k);
+    if now.options.effect == Effect::FrictionKept {
+        let kept = now.kept[k];
+        let pressure = point.pressure[k];
+        let of_pressure = if pressure < 0.0 { 1.0 } else { kept };
+        kept * (stress + pressure) - of_pressure * pressure
+    } else {
+        stress
+    }
 }

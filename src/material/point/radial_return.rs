@@ -5,7 +5,7 @@
 //! 1998, chapter 3). Y never falls with Δ, so that there is one root between zero and
 //! `(q − Y(0))/3G`.
 
-use super::{LANES, PointBatch};
+use super::{Conditions, LANES, PointBatch};
 use numerics::dispatch::Vectorised;
 use numerics::lanes::{F64x8, Lanes};
 
@@ -22,6 +22,29 @@ pub(crate) fn equivalent_stress(batch: &PointBatch, k: usize) -> f64 {
     let diagonal = s[0][k] * s[0][k] + s[1][k] * s[1][k] + s[2][k] * s[2][k];
     let shear = s[3][k] * s[3][k] + s[4][k] * s[4][k] + s[5][k] * s[5][k];
     (1.5 * (diagonal + 2.0 * shear)).sqrt()
+}
+
+/// Returns eight points at constant pressure to flow stresses (Pa) that do not follow the strain of the step.
+#[inline(always)]
+pub(super) fn to_flow_stress(point: &mut PointBatch, now: &Conditions, flow_stress: &super::Lanes) {
+    for k in 0..LANES {
+        let q = equivalent_stress(point, k);
+        let excess = q - flow_stress[k];
+        let yields = excess > 0.0;
+        let divisor = if yields { q } else { 1.0 };
+        let scale = if yields {
+            flow_stress[k] / divisor
+        } else {
+            1.0
+        };
+        let three_g = 3.0 * now.shear_modulus[k];
+        let counts = yields && three_g > 0.0;
+        let stiffness = if counts { three_g } else { 1.0 };
+        for component in &mut point.deviatoric_stress {
+            component[k] *= scale;
+        }
+        point.plastic_strain[k] += if counts { excess / stiffness } else { 0.0 };
+    }
 }
 
 /// Flow stress of eight points.

@@ -74,6 +74,17 @@ macro_rules! equations_of_state {
                 /// Its linear coefficient.
                 b: Spanned<f64> = 0.0, Any;
             }
+            /// `eos.polynomial`: polynomial in the compression.
+            polynomial: PolynomialParams => Polynomial {
+                /// Bulk modulus K₁.
+                k1: Placed<Pressure>, Positive;
+                /// Coefficient K₂ of the square.
+                k2: Placed<Pressure> = "0", Any;
+                /// Coefficient K₃ of the cube.
+                k3: Placed<Pressure> = "0", Any;
+                /// Grüneisen parameter.
+                gamma0: Spanned<f64> = 0.0, NotNegative;
+            }
             /// `eos.tait`: Tait.
             tait: TaitParams => Tait {
                 /// Coefficient B; or the sound speed.
@@ -227,6 +238,108 @@ macro_rules! strength_laws {
                 /// Its volume correction.
                 a: Spanned<f64>, NotNegative;
             }
+            /// `strength.drucker_prager`: linear in the pressure up to a limit.
+            drucker_prager: DruckerPragerParams => DruckerPrager {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit.
+                max_strength: Placed<Pressure> = "0", NotNegative => "no limit";
+            }
+            /// `strength.mohr_coulomb`: Mohr and Coulomb.
+            mohr_coulomb: MohrCoulombParams => MohrCoulomb {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Cohesion.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Coefficient of friction tan φ.
+                friction: Spanned<f64>, NotNegative;
+                /// Largest principal tension.
+                tensile_strength: Placed<Pressure>, NotNegative;
+            }
+            /// `strength.lundborg`: intact rock.
+            lundborg: LundborgParams => Lundborg {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure there.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit at high pressure.
+                max_strength: Placed<Pressure>, Positive;
+            }
+            /// `strength.collins`: rock, intact and damaged.
+            collins: CollinsParams => Collins {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ of intact rock at zero pressure.
+                cohesion: Placed<Pressure>, NotNegative;
+                /// Its slope over the pressure there.
+                friction: Spanned<f64>, NotNegative;
+                /// Its limit at high pressure.
+                max_strength: Placed<Pressure>, Positive;
+                /// Shear strength √J₂ of damaged rock at zero pressure.
+                damaged_cohesion: Placed<Pressure> = "0", NotNegative;
+                /// Its slope over the pressure.
+                damaged_friction: Spanned<f64>, NotNegative;
+                /// Its limit.
+                damaged_max_strength: Placed<Pressure> = "0", NotNegative => "that of intact rock";
+                /// Coefficient ξ of softening by heat.
+                softening: Spanned<f64> = 0.0, NotNegative => "none";
+                /// Pressure a in Simon's law of melting.
+                simon_a: Placed<Pressure> = "0", NotNegative => "no pressure in the melting temperature";
+                /// Exponent c in Simon's law.
+                simon_c: Spanned<f64> = 1.0, Positive;
+            }
+            /// `strength.johnson_holmquist_2`: ceramics and glass, intact and fractured.
+            johnson_holmquist_2: JohnsonHolmquist2Params => JohnsonHolmquist2 {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Intact strength A.
+                a: Spanned<f64>, Positive;
+                /// Fractured strength B.
+                b: Spanned<f64>, NotNegative;
+                /// Rate coefficient C.
+                c: Spanned<f64> = 0.0, NotNegative;
+                /// Exponent M of the fractured strength.
+                m: Spanned<f64>, NotNegative;
+                /// Exponent N of the intact strength.
+                n: Spanned<f64>, NotNegative;
+                /// Largest tension T.
+                max_tension: Placed<Pressure>, NotNegative;
+                /// Hugoniot elastic limit.
+                hugoniot_limit: Placed<Pressure>, Positive;
+                /// Pressure at the Hugoniot elastic limit.
+                hugoniot_pressure: Placed<Pressure>, Positive;
+                /// Largest fractured strength, over the stress at the Hugoniot elastic limit.
+                max_fractured: Spanned<f64> = 0.0, NotNegative => "no limit";
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
+            }
+            /// `strength.holmquist_johnson_cook`: concrete.
+            holmquist_johnson_cook: HolmquistJohnsonCookParams => HolmquistJohnsonCook {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Strength A that damage takes.
+                a: Spanned<f64>, Positive;
+                /// Coefficient B of the pressure.
+                b: Spanned<f64>, NotNegative;
+                /// Rate coefficient C.
+                c: Spanned<f64> = 0.0, NotNegative;
+                /// Exponent N of the pressure.
+                n: Spanned<f64>, NotNegative;
+                /// Compressive strength.
+                compressive_strength: Placed<Pressure>, Positive;
+                /// Largest tension T.
+                max_tension: Placed<Pressure>, NotNegative;
+                /// Largest strength, over the compressive strength.
+                max_strength: Spanned<f64>, Positive;
+                /// Reference strain rate.
+                reference_rate: Placed<Rate> = "1/s", Positive;
+            }
         }
     };
 }
@@ -275,6 +388,40 @@ macro_rules! failure_laws {
                 spall_stress: Placed<Pressure> = "0", NotNegative => "no such stress";
                 /// Share of the strength that damage takes before failure: none, its own, or that in shear bands.
                 coupling: Spanned<Coupling> = Coupling::Uncoupled;
+            }
+            /// `failure.ivanov`: shear damage of rock.
+            ivanov: IvanovParams => Ivanov {
+                /// Failure strain of brittle rock.
+                least_strain: Spanned<f64> = 1e-4, Positive;
+                /// Growth of the failure strain with pressure.
+                slope: Placed<PerPressure> = "1e-11/Pa", NotNegative;
+                /// Pressure from which on it grows.
+                pressure: Placed<Pressure> = "300 MPa", NotNegative;
+            }
+            /// `failure.collins`: shear damage of rock, brittle to ductile.
+            collins: CollinsFailureParams => CollinsFailure {
+                /// Pressure of the brittle–ductile transition.
+                brittle_ductile: Placed<Pressure>, Positive;
+                /// Pressure of the brittle–plastic transition.
+                brittle_plastic: Placed<Pressure>, Positive;
+            }
+            /// `failure.johnson_holmquist_2`: damage of ceramics, and their bulking.
+            johnson_holmquist_2: JohnsonHolmquist2FailureParams => JohnsonHolmquist2Failure {
+                /// D₁.
+                d1: Spanned<f64>, NotNegative;
+                /// D₂.
+                d2: Spanned<f64>, NotNegative;
+                /// Share of the elastic energy lost that presses from then on.
+                bulking: Spanned<f64> = 1.0, NotNegative;
+            }
+            /// `failure.holmquist_johnson_cook`: damage of concrete.
+            holmquist_johnson_cook: HolmquistJohnsonCookFailureParams => HolmquistJohnsonCookFailure {
+                /// D₁.
+                d1: Spanned<f64>, NotNegative;
+                /// D₂.
+                d2: Spanned<f64>, NotNegative;
+                /// Least failure strain.
+                least_strain: Spanned<f64> = 0.01, Positive;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

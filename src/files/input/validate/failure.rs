@@ -24,7 +24,7 @@ macro_rules! failure {
                         OrNone::None => None,
                         OrNone::Table(params) => {
                             let (at, base) = (table.span(), base.$law);
-                            Some(law!(params, base, |_: &str| None, at, $made { $($key [$($value)?])+ }))
+                            Some(law!(params, base, |_: &str| None::<f64>, at, $made { $($key [$($value)?])+ }))
                         }
                     },
                 }, )+
@@ -63,10 +63,28 @@ pub fn failure(
     if let Some(table) = table
         && let OrNone::Table(params) = table.get_ref()
     {
-        failure.options = options(params, &failure)?;
+        failure.options = options(params, &failure, strength)?;
         check(table, params, &failure, strength)?;
     }
+    let stated = table.is_some_and(|table| match table.get_ref() {
+        OrNone::Table(params) => params.effect.is_some(),
+        OrNone::None => false,
+    });
+    if !stated && !failure.is_none() {
+        failure.options.effect = natural_effect(&failure, strength);
+    }
     Ok(failure)
+}
+
+/// What damage takes of a strength where nothing is said of it: friction stays where there is any.
+fn natural_effect(failure: &Failure, strength: &Strength) -> Effect {
+    let fades = failure.options.softens() || failure.grady_kipp.is_some();
+    match failure.options.effect {
+        _ if strength.keeps_friction() => Effect::FrictionKept,
+        Effect::FrictionKept if fades => Effect::Scaled,
+        Effect::FrictionKept => Effect::default(),
+        other => other,
+    }
 }
 
 /// True for what has no stiffness in shear and is held together by the cold part of its pressure.
@@ -79,7 +97,11 @@ fn is_liquid(eos: &Eos, strength: &Strength) -> bool {
 }
 
 /// Common options of the laws.
-fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, Diagnostic> {
+fn options(
+    params: &FailureParams,
+    failure: &Failure,
+    strength: &Strength,
+) -> Result<FailureOptions, Diagnostic> {
     let base = failure.options;
     let mut options = FailureOptions {
         fracture_energy: params.fracture_energy()?.unwrap_or(base.fracture_energy),
@@ -98,15 +120,30 @@ fn options(params: &FailureParams, failure: &Failure) -> Result<FailureOptions, 
     // What fades says so by itself.
     let coupled = (failure.johnson_cook).is_some_and(|law| law.coupling != Coupling::Uncoupled);
     let fades = options.softens() || coupled || failure.grady_kipp.is_some();
+    let friction = strength.keeps_friction();
+    let fading = if friction {
+        Effect::FrictionKept
+    } else {
+        Effect::Scaled
+    };
     options.effect = match &params.effect {
-        Some(effect) if fades && *effect.get_ref() != Effect::Scaled => {
+        Some(effect) if *effect.get_ref() == Effect::FrictionKept && !friction => {
+            let title = "this strength has no friction that failed matter could keep";
+            let help = "strengths that grow with pressure have, as `drucker_prager` and `collins`";
+            return Err(Diagnostic::new(effect.span(), title).help(help));
+        }
+        Some(effect) if *effect.get_ref() == Effect::Scaled && friction => {
+            let title = "damage takes its share of this strength by the strength's own rule";
+            let help = "leave `effect` out, or say \"friction_kept\"";
+            return Err(Diagnostic::new(effect.span(), title).help(help));
+        }
+        Some(effect) if fades && *effect.get_ref() != fading => {
             let title = "where cracks grow or matter softens, stress fades with damage";
-            return Err(
-                Diagnostic::new(effect.span(), title).help("leave `effect` out, or say \"scaled\"")
-            );
+            let help = format!("leave `effect` out, or say \"{}\"", fading.name());
+            return Err(Diagnostic::new(effect.span(), title).help(help));
         }
         Some(effect) => *effect.get_ref(),
-        None if fades => Effect::Scaled,
+        None if fades => fading,
         None => base.effect,
     };
     Ok(options)
@@ -168,25 +205,44 @@ fn check(
             return Err(Diagnostic::new(at, title));
         }
     }
-    if options.scatter > 0.0 && failure.johnson_cook.is_none() && failure.plastic_strain.is_none() {
+    if options.scatter > 0.0 && !has_failure_strain(failure) {
         let at = (params.scatter.as_ref()).map_or_else(|| table.span(), Spanned::span);
         let title = "no failure strain that could scatter";
-        return Err(Diagnostic::new(at, title).help("`johnson_cook` and `plastic_strain` have one"));
+        let help = "a law that counts plastic strain has one, as `johnson_cook` and `ivanov`";
+        return Err(Diagnostic::new(at, title).help(help));
     }
     let strengths = against_strength(failure, strength);
     strengths.map_or(Ok(()), |title| Err(Diagnostic::new(table.span(), title)))
 }
 
+/// True if a law has a failure strain.
+fn has_failure_strain(failure: &Failure) -> bool {
+    failure.johnson_cook.is_some()
+        || failure.plastic_strain.is_some()
+        || failure.ivanov.is_some()
+        || failure.collins.is_some()
+        || failure.johnson_holmquist_2.is_some()
+        || failure.holmquist_johnson_cook.is_some()
+}
+
 /// Why a strength cannot fail that way.
 fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static str> {
     let unscaled = matches!(strength, Strength::NeoHookean(_) | Strength::Viscous(_));
-    let strains = failure.johnson_cook.is_some() || failure.plastic_strain.is_some();
+    let strains = has_failure_strain(failure);
     if failure.grady_kipp.is_some() && strength.shear_modulus() == 0.0 {
         Some("cracks grow in solids, and this material has no shear modulus")
     } else if failure.options.effect == Effect::Scaled && unscaled {
         Some(
             "stress that fades with damage needs a strength that is elastic, or elastic and plastic",
         )
+    } else if failure.johnson_holmquist_2.is_some()
+        && !matches!(strength, Strength::JohnsonHolmquist2(_))
+    {
+        Some("`johnson_holmquist_2` damages the strength of that name alone")
+    } else if failure.holmquist_johnson_cook.is_some()
+        && !matches!(strength, Strength::HolmquistJohnsonCook(_))
+    {
+        Some("`holmquist_johnson_cook` damages the strength of that name alone")
     } else if strains && !strength.yields() {
         Some("a failure strain is a plastic one, and this material does not yield")
     } else {

@@ -4,6 +4,7 @@
 /// table has none; a number without a default may be that of `$other` then, a function of its key.
 macro_rules! law {
     ($params:ident, $base:ident, $other:expr, $at:ident, $made:ident { $($key:ident [$($value:expr)?])+ }) => {{
+        #[allow(unused_variables, reason = "if all numbers have defaults")]
         let other = $other;
         let law = material::$made {
             $( $key: $params.$key(

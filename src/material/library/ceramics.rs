@@ -1,0 +1,127 @@
+//! Ceramics and glass with the law of Johnson and Holmquist.
+
+use super::Parts;
+use crate::{
+    Effect, Eos, Failure, JohnsonHolmquist2, JohnsonHolmquist2Failure, Polynomial, Strength,
+};
+
+const CRONIN: &str = "Cronin et al. (2003), Implementation and validation of the Johnson-Holmquist \
+     ceramic material model in LS-DYNA, 4th European LS-DYNA Users Conf.";
+const ALUMINA: &str = "Anderson, Johnson & Holmquist (1995), 15th Int. Symp. Ballistics, 15, as Cronin \
+     et al. (2003), 4th European LS-DYNA Users Conf., quote it; not checked against the paper";
+const CARBIDE: &str = "Johnson & Holmquist (1999), J. Appl. Phys. 85, 8060, as the reference of Radioss \
+     quotes it";
+const GLASS: &str = "float glass of Holmquist et al. (1995), 15th Int. Symp. Ballistics, 237, as Cronin et \
+     al. (2003), 4th European LS-DYNA Users Conf., quote it";
+const RATE: &str = "1/s, as in Johnson & Holmquist (1994), AIP Conf. Proc. 309, 981";
+const COLD: &str = "none: the law has no heat";
+const NONE: &str = "none";
+const LAW: &str = "as the law has it";
+const BULKING: &str = "1, as in the sources of the other constants";
+
+/// Sources of all keys.
+macro_rules! sources {
+    ($constants:expr) => {
+        &[
+            ("eos.polynomial.gamma0", COLD),
+            ("strength.johnson_holmquist_2.reference_rate", RATE),
+            ("failure.johnson_holmquist_2.bulking", BULKING),
+            ("failure.effect", LAW),
+            ("", $constants),
+        ]
+    };
+}
+
+records! {
+    "alumina", "alumina of 3.7 g/cm³, Johnson-Holmquist strength, damage and bulking":
+        ceramic(
+            3700.0,
+            [130.95e9, 0.0, 0.0],
+            [90.16e9, 0.93, 0.31, 0.0, 0.6, 0.6],
+            [0.2e9, 2.79e9, 1.46e9, 0.0],
+            [0.005, 1.0],
+        ),
+        &[
+            ("eos.polynomial.gamma0", COLD),
+            ("strength.johnson_holmquist_2.reference_rate", RATE),
+            ("strength.johnson_holmquist_2.max_fractured", NONE),
+            ("failure.johnson_holmquist_2.bulking", BULKING),
+            ("failure.effect", LAW),
+            ("", ALUMINA),
+        ];
+    "boron-carbide", "boron carbide, Johnson-Holmquist strength, damage and bulking":
+        ceramic(
+            2510.0,
+            [233e9, -593e9, 2800e9],
+            [197e9, 0.927, 0.7, 0.005, 0.85, 0.67],
+            [0.26e9, 19e9, 8.71e9, 0.2],
+            [0.001, 0.5],
+        ),
+        sources!(CARBIDE);
+    "glass-float", "float glass, Johnson-Holmquist strength, damage and bulking":
+        ceramic(
+            2530.0,
+            [45.4e9, -138e9, 290e9],
+            [30.4e9, 0.93, 0.088, 0.003, 0.35, 0.77],
+            [0.15e9, 5.95e9, 2.92e9, 0.5],
+            [0.053, 0.85],
+        ),
+        sources!(GLASS);
+    "silicon-carbide", "silicon carbide, Johnson-Holmquist strength, damage and bulking":
+        ceramic(
+            3163.0,
+            [204.785e9, 0.0, 0.0],
+            [183e9, 0.96, 0.35, 0.0, 1.0, 0.65],
+            [0.37e9, 14.567e9, 5.9e9, 0.8],
+            [0.48, 0.48],
+        ),
+        sources!(CRONIN);
+}
+
+/// Density (kg/m³), `[K₁, K₂, K₃]` (Pa), `[G (Pa), A, B, C, M, N]`, `[T, HEL, p_HEL (Pa), σ*_max]`, `[D₁, D₂]`.
+fn ceramic(
+    density: f64,
+    [k1, k2, k3]: [f64; 3],
+    [shear_modulus, a, b, c, m, n]: [f64; 6],
+    [
+        max_tension,
+        hugoniot_limit,
+        hugoniot_pressure,
+        max_fractured,
+    ]: [f64; 4],
+    [d1, d2]: [f64; 2],
+) -> Parts {
+    let mut failure = Failure {
+        johnson_holmquist_2: Some(JohnsonHolmquist2Failure {
+            d1,
+            d2,
+            bulking: 1.0,
+        }),
+        ..Failure::NONE
+    };
+    failure.options.effect = Effect::FrictionKept;
+    Parts {
+        density,
+        eos: Eos::Polynomial(Polynomial {
+            k1,
+            k2,
+            k3,
+            gamma0: 0.0,
+        }),
+        strength: Strength::JohnsonHolmquist2(JohnsonHolmquist2 {
+            shear_modulus,
+            a,
+            b,
+            c,
+            m,
+            n,
+            max_tension,
+            hugoniot_limit,
+            hugoniot_pressure,
+            max_fractured,
+            reference_rate: 1.0,
+        }),
+        thermal: None,
+        failure,
+    }
+}

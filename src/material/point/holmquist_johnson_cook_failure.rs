@@ -1,0 +1,68 @@
+//! Damage of concrete by plastic strain.
+//!
+//! ```text
+//! dD = dε_p/ε_f,    ε_f = max[D₁ (p* + T*)^D₂, ε_min]
+//! ```
+//!
+//! with the pressures of [`HolmquistJohnsonCook`](super::HolmquistJohnsonCook), the strength that this law belongs to.
+//! Source: Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591, without the strain of
+//! pores that crush.
+
+use super::{Conditions, LANES, Law, PointBatch};
+use crate::at_least;
+
+law! {
+    /// Damage by plastic strain.
+    HolmquistJohnsonCookFailure {
+        /// Damage coefficient D₁: failure strain at `p* + T* = 1`.
+        d1: "",
+        /// Damage exponent D₂.
+        d2: "",
+        /// Least failure strain `ε_min`.
+        least_strain: "",
+    }
+}
+
+impl HolmquistJohnsonCookFailure {
+    /// Failure strain at `p* + T*`.
+    #[must_use]
+    pub fn failure_strain(&self, above: f64) -> f64 {
+        let power = if above > 0.0 {
+            libm::pow(above, self.d2)
+        } else {
+            0.0
+        };
+        at_least(self.d1 * power, self.least_strain)
+    }
+
+    /// Lane by lane: only what flows is damaged.
+    #[inline(never)]
+    fn damage(&self, point: &mut PointBatch, now: &Conditions) {
+        for k in 0..LANES {
+            let increment = now.plastic_increment[k];
+            if increment > 0.0 {
+                let factor = now.options.strain_factor(point.id[k]);
+                let strain = factor * self.failure_strain(now.curves.above[k]);
+                point.damage[k] += increment / strain;
+            }
+        }
+    }
+}
+
+impl Law for HolmquistJohnsonCookFailure {
+    const STATE: &'static [&'static str] = &["deviatoric_stress", "damage", "failure_energy"];
+    const FOLLOWS_STATE: bool = true;
+    const HAS_ONSET: bool = false;
+
+    #[inline(always)]
+    fn fail(&self, point: &mut PointBatch, now: &Conditions) {
+        if !now.options.softens() {
+            self.damage(point, now);
+        }
+    }
+
+    #[inline(always)]
+    fn open(&self, point: &mut PointBatch, now: &Conditions) {
+        self.damage(point, now);
+    }
+}
