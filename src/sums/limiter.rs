@@ -22,6 +22,8 @@ pub struct Limiter {
     rough: F64x8,
     /// Speed (m/s) at which a neighbourhood closes in: `s max(0, −tr D)`.
     closing: F64x8,
+    /// Equivalent rate of strain, `√⅔ ‖dev D‖` (1/s).
+    shear: F64x8,
 }
 
 impl Limiter {
@@ -30,6 +32,7 @@ impl Limiter {
         linear: F64x8([0.0; LANES]),
         rough: F64x8([0.0; LANES]),
         closing: F64x8([0.0; LANES]),
+        shear: F64x8([0.0; LANES]),
     };
 
     /// From a velocity gradient (1/s, row-major), w (m/s) and s² (m²).
@@ -54,26 +57,31 @@ impl Limiter {
         }
         let linear = V::splat(1.0).min(counted.mul_add(counted, rough).div(square));
         let closing = zero.sub(rate).max(zero).mul(square_length.sqrt());
+        let third = V::splat(1.0 / 3.0);
+        let deviator = rate.neg_mul_add(rate.mul(third), square).max(zero);
         Self {
             linear: linear.store(),
             rough: rough.mul(V::splat(ROUGH)).div(square).store(),
             closing: closing.store(),
+            shear: deviator.mul(V::splat(2.0 / 3.0)).sqrt().store(),
         }
     }
 
-    /// The share that both terms take, `g = min(1, κ (|w|/s)²/‖D‖² + (s max(0, −tr D)/.3c)²)`, of points with these
-    /// sound speeds (m/s).
+    /// The share that both terms take, of points with these sound speeds (m/s) and rates of plastic strain (1/s):
+    /// `1 − λ (1 − g)` with `g = min(1, κ (|w|/s)²/‖D‖² + (s max(0, −tr D)/.3c)²)` and the share λ of plastic flow in the
+    /// equivalent rate of strain.
     ///
-    /// It falls with the square of the spacing in a smooth flow, and is one in a front of a few particles, where
-    /// neighbours rattle, and where matter is struck.
+    /// In plastic flow it falls with the square of the spacing where the flow is smooth, and is one in a front of a few
+    /// particles, where neighbours rattle, and where matter is struck. In matter that does not flow it is one.
     #[inline(always)]
     #[must_use]
-    pub fn both<V: Lanes>(&self, sound_speed: V) -> F64x8 {
-        let few = V::splat(f64::MIN_POSITIVE);
+    pub fn both<V: Lanes>(&self, sound_speed: V, plastic_rate: V) -> F64x8 {
+        let (one, few) = (V::splat(1.0), V::splat(f64::MIN_POSITIVE));
         let limit = sound_speed.mul(V::splat(STRONG)).max(few);
         let strong = V::load(&self.closing).div(limit);
-        let share = strong.mul_add(strong, V::load(&self.rough));
-        V::splat(1.0).min(share).store()
+        let share = one.min(strong.mul_add(strong, V::load(&self.rough)));
+        let flow = one.min(plastic_rate.div(V::load(&self.shear).max(few)));
+        flow.neg_mul_add(one.sub(share), one).store()
     }
 }
 
@@ -93,9 +101,10 @@ mod tests {
         all(l, rest).linear.0[0]
     }
 
-    /// Of both terms there, where sound runs a metre in a second.
+    /// Of both terms there, where sound runs a metre in a second and all strain is plastic.
     fn both(l: &[f64; 9], rest: [f64; 3]) -> f64 {
-        all(l, rest).both(F64x8([1.0; LANES])).0[0]
+        let lanes = |c: f64| F64x8([c; LANES]);
+        all(l, rest).both(lanes(1.0), lanes(1e3)).0[0]
     }
 
     fn diagonal(x: f64, y: f64, z: f64) -> [f64; 9] {
@@ -149,8 +158,13 @@ mod tests {
         assert_eq!(both(&diagonal(0.2, 0.1, 0.1), SMOOTH), 0.0);
         assert_eq!(both(&[0.0; 9], SMOOTH), 0.0);
         assert!(both(&[f64::NAN; 9], SMOOTH).is_nan());
-        let cold = all(&wave, SMOOTH).both(F64x8([0.0; LANES]));
-        assert_eq!(cold.0[0], 1.0);
+        let lanes = |c: f64| F64x8([c; LANES]);
+        assert_eq!(all(&wave, SMOOTH).both(lanes(0.0), lanes(1e3)).0[0], 1.0);
+        // Uniaxial strain of 1/s strains plastically by two thirds of that, or less.
+        let plastic = |rate: f64| all(&wave, SMOOTH).both(lanes(1.0), lanes(rate)).0[0];
+        assert_eq!(plastic(0.0), 1.0);
+        assert!((plastic(1e-3 / 3.0) - 0.5).abs() < 1e-5);
+        assert!(plastic(2e-3 / 3.0) < 2e-5);
     }
 
     /// A body that vibrates while it turns takes as much as one at rest.

@@ -286,18 +286,17 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
                 target.hourglass.advance::<V>(points, &deviator, &self.rest);
             }
         }
-        let share = self.limiter.both(V::read(&after.sound_speed));
+        let dt = V::splat(target.hourglass.dt).max(V::splat(f64::MIN_POSITIVE));
+        let strained = V::read(&after.plastic_strain).sub(V::read(&points.before.plastic_strain));
+        let share = (self.limiter).both(V::read(&after.sound_speed), strained.div(dt));
         points.each(|k, i, index| {
             let mut own = [0.0; 9];
             for c in 0..9 {
                 own[c] = stress[c].0[k];
             }
             let viscous_speed = after.viscous_speed(k, self.limiter.linear.0[k]);
-            // Plastic flow damps what the viscosity would.
-            let flows = after.plastic_strain[k] > points.before.plastic_strain[k];
-            let share = if flows { share.0[k] } else { 1.0 };
             let sound_speed = after.sound_speed[k];
-            let state = [after.density[k], sound_speed, viscous_speed, share];
+            let state = [after.density[k], sound_speed, viscous_speed, share.0[k]];
             // SAFETY: by the contract of this function.
             unsafe {
                 let displacement = target.hourglass.displacement.slot(i);
