@@ -9,6 +9,7 @@ const BASALT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, in the cod
 const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants in Uintah, citing \
      Steinberg, UCRL-MA-106439";
 const PLAIN: &str = "no hardening";
+pub(super) const UNCUT: &str = "none: a spall limit ends tension";
 const FLUID: &str = "without strength: its own is for the case to choose";
 
 records! {
@@ -17,6 +18,7 @@ records! {
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
+            ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
     "basalt-tillotson", "basalt to vaporisation, intact rock: of constant strength, without flaws, without friction once it has failed":
@@ -24,6 +26,7 @@ records! {
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", BASALT),
+            ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
     "granite-tillotson", "granite to vaporisation, without strength":
@@ -35,7 +38,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
     "iron-tillotson", "iron to vaporisation, without strength":
         {
             tillotson(
@@ -45,7 +48,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
 }
 
 /// Aluminium, with the strength of 6061-T6.
@@ -87,6 +90,7 @@ fn tillotson(
             e0,
             e_iv,
             e_cv,
+            least_density: 0.0,
         }),
         strength,
         thermal: None,
