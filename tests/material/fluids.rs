@@ -1,7 +1,7 @@
 //! Tait, Tillotson and gas: closed forms, joins of the branches, derivatives; Newtonian viscosity.
 
 use crate::support::{batch, equations_of_state, material, step, stress, tillotson};
-use material::{Eos, IdealGas, Strength, Tait, Viscous};
+use material::{Eos, IdealGas, Strength, Tait, Tillotson, Viscous};
 use nalgebra::Matrix3;
 
 #[test]
@@ -124,4 +124,31 @@ fn a_newtonian_fluid_resists_the_rate_of_shear_alone() {
     // A fluid has no shear wave: its modulus is K alone.
     assert!((fluid.p_wave_modulus() / 4e5 - 1.0).abs() < 1e-14);
     assert!((fluid.diffusion_time(0.01) / (0.125 * 1e-4 * 1000.0 / eta) - 1.0).abs() < 1e-14);
+}
+
+/// Below the least density no cold matter pulls; above it, and where it presses, nothing changes.
+#[test]
+fn thin_matter_of_tillotson_pulls_no_more() {
+    let whole = tillotson();
+    let cut = Tillotson {
+        least_density: 0.9,
+        ..whole
+    };
+    for (ratio, energy) in [
+        (0.95, 0.0),
+        (0.91, 1e5),
+        (0.8, 0.0),
+        (0.5, 1e6),
+        (0.5, 20e6),
+    ] {
+        let (free, limited) = (
+            whole.response(2700.0, 2700.0 * ratio, energy),
+            cut.response(2700.0, 2700.0 * ratio, energy),
+        );
+        let pulls = ratio < 0.9 && free.pressure < 0.0;
+        let expected = if pulls { 0.0 } else { free.pressure };
+        assert_eq!(limited.pressure, expected, "{ratio} {energy}");
+        assert_eq!(limited.dp_drho, free.dp_drho);
+    }
+    assert!(whole.response(2700.0, 2160.0, 0.0).pressure < 0.0);
 }

@@ -75,6 +75,7 @@ pub fn tillotson() -> Tillotson {
         e0: 5e6,
         e_iv: 3e6,
         e_cv: 13.9e6,
+        least_density: 0.0,
     }
 }
 

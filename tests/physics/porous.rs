@@ -34,6 +34,7 @@ const ALUMINIUM: Tillotson = Tillotson {
     e0: 5e6,
     e_iv: 3e6,
     e_cv: 13.9e6,
+    least_density: 0.0,
 };
 
 /// A state behind a shock.

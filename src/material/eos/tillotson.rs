@@ -19,7 +19,8 @@
 //! appendix II, and Benz & Asphaug (1999), Icarus 142, 5.
 //!
 //! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½.
-//! The expanded cold branch bears any tension: a spall cut-off ends it.
+//! The expanded cold branch bears any tension: a spall cut-off ends it, or a least density, below which no
+//! state has a pressure below zero (Schäfer et al. 2016, A&A 590, A19, has no pressure at all there).
 
 use super::{EquationOfState, PointResponse};
 use crate::Contradiction;
@@ -49,6 +50,9 @@ law! {
         e_iv: "J/kg",
         /// Specific energy of complete vaporisation (J/kg).
         e_cv: "J/kg",
+        /// Density over that of the reference state below which matter that has not vaporised bears no
+        /// tension; zero for none.
+        least_density: "",
     }
 }
 
@@ -86,6 +90,16 @@ impl Tillotson {
     /// reference density `rho0` (kg/m³).
     #[must_use]
     pub fn response(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
+        let mut response = self.unlimited(rho0, rho, e);
+        if rho < self.least_density * rho0 && response.pressure < 0.0 {
+            response.pressure = 0.0;
+        }
+        response
+    }
+
+    /// [`Self::response`] without the least density.
+    #[inline]
+    fn unlimited(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
         let at = self.shared(rho0, rho, e);
         if at.mu >= 0.0 || e <= self.e_iv {
             return self.condensed(&at);

@@ -8,6 +8,7 @@ const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH 
 const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants in Uintah, citing \
      Steinberg, UCRL-MA-106439";
 const PLAIN: &str = "no hardening";
+pub(super) const UNCUT: &str = "none: a spall limit ends tension";
 const FLUID: &str = "without strength: its own is for the case to choose";
 
 records! {
@@ -16,6 +17,7 @@ records! {
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
+            ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
     "granite-tillotson", "granite to vaporisation, without strength":
@@ -27,7 +29,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
     "iron-tillotson", "iron to vaporisation, without strength":
         {
             tillotson(
@@ -37,7 +39,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
 }
 
 /// Aluminium, with the strength of 6061-T6.
@@ -79,6 +81,7 @@ fn tillotson(
             e0,
             e_iv,
             e_cv,
+            least_density: 0.0,
         }),
         strength,
         thermal: None,

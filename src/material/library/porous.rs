@@ -1,7 +1,7 @@
 //! Porous materials: a solid with a law of compaction.
 
 use super::Parts;
-use super::impact::aluminium;
+use super::impact::{UNCUT, aluminium};
 use crate::{Compaction, Eos, PAlpha, Porosity, Strength};
 
 const FOAM: &str = "Jutzi, Benz & Michel (2008), Icarus 198, 242, section 5.1, after Herrmann (1969); as the tests of \
@@ -22,6 +22,7 @@ records! {
             ("porosity.p_alpha.transition", PLAIN),
             ("porosity", FOAM),
             ("strength", FLUID),
+            ("eos.tillotson.least_density", UNCUT),
             ("", SOLID),
         ];
 }
