@@ -79,7 +79,7 @@ fn velocity_gradient(criterion: &mut Criterion) {
 fn momentum(criterion: &mut Criterion) {
     let deviatoric = [1e8, 0.0, -1e8, 1e8, 2e8, 3e8];
     let stress = [1.1e9, 1e8, 2e8, 1e8, 1e9, 3e8, 2e8, 3e8, 0.9e9];
-    let corrected = CorrectedRecord::new(&stress, &[1e-9; 3], 0.1, [DENSITY, 5328.0, 1.0]);
+    let corrected = CorrectedRecord::new(&stress, &[1e-9; 3], 0.1, [DENSITY, 5328.0, 1.0, 1.0]);
     momentum_of(criterion, "corrected_momentum", corrected);
     let conventional = StressRecord::new(1e9, &deviatoric, DENSITY, 5328.0);
     momentum_of(criterion, "momentum_and_energy", conventional);

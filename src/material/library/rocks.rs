@@ -1,6 +1,7 @@
 //! Rock, ice and soil: strength that grows with pressure, flaws, friction of what is broken.
 
 use super::Parts;
+use super::impact::UNCUT;
 use crate::{
     Collins, CollinsFailure, Crosses, Effect, Eos, Failure, Flaws, GradyKipp, Ivanov, Linear,
     LinearForm, MohrCoulomb, PrincipalStress, Strength, Tillotson, VonMises,
@@ -62,6 +63,7 @@ records! {
             ("failure.grady_kipp.crack_speed", CRACKS),
             ("failure.grady_kipp", FLAWS),
             ("failure.effect", FADES),
+            ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
     "dunite", "dunite to vaporisation: friction and shear damage":
@@ -81,6 +83,7 @@ records! {
             ("strength", DUNITE),
             ("failure.effect", FADES),
             ("failure", IVANOV),
+            ("eos.tillotson.least_density", UNCUT),
             ("", OLIVINE),
         ];
     "granite", "granite to vaporisation: friction, shear damage, brittle in tension":
@@ -105,6 +108,7 @@ records! {
             ("failure.principal_stress", GRANITE_TENSION),
             ("failure.effect", FADES),
             ("failure", GRANITE_DAMAGE),
+            ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
     "ice-tillotson", "cold water ice to vaporisation: constant strength, flaws":
@@ -131,6 +135,7 @@ records! {
             ("failure.grady_kipp.crack_speed", CRACKS),
             ("failure.grady_kipp", ICE_FLAWS),
             ("failure.effect", FADES),
+            ("eos.tillotson.least_density", UNCUT),
             ("", ICE_TILLOTSON),
         ];
     "regolith", "loose dry regolith for slow loads: friction alone, no cohesion; not for shocks":
@@ -179,6 +184,7 @@ fn tillotson(
         e0,
         e_iv,
         e_cv,
+        least_density: 0.0,
     };
     (density, law)
 }
