@@ -19,7 +19,7 @@ use particles::Mirrors;
 use particles::{FIELDS, FieldInfo, ParticleStore};
 
 /// Largest differences of position (in spacings) and velocity (relative to `speed`) between the
-/// particles of a reduced model and the same ones of the whole.
+/// particles of a reduced model and the same ones of the whole. One that crosses a plane is from then on its image.
 fn largest_difference(reduced: &Simulation, whole: &Simulation, speed: f64) -> (f64, f64) {
     let whole_slot: BTreeMap<u64, usize> = (0..whole.particles.owned())
         .map(|i| (whole.particles.id[i], i))
@@ -28,8 +28,12 @@ fn largest_difference(reduced: &Simulation, whole: &Simulation, speed: f64) -> (
     for i in 0..reduced.particles.owned() {
         let j = whole_slot[&reduced.particles.id[i]];
         for a in 0..3 {
-            let dx = reduced.particles.position[i][a] - whole.particles.position[j][a];
-            let dv = reduced.particles.velocity[i][a] - whole.particles.velocity[j][a];
+            let x = reduced.particles.position[i][a];
+            let there = whole.particles.position[j][a];
+            let crossed = reduced.state.plane_crossings > 0 && x * there < 0.0;
+            let side = if crossed { -1.0 } else { 1.0 };
+            let dx = x - side * there;
+            let dv = reduced.particles.velocity[i][a] - side * whole.particles.velocity[j][a];
             position = position.max(dx.abs() / SPACING);
             velocity = velocity.max(dv.abs() / speed);
         }
