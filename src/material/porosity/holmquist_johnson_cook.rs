@@ -98,7 +98,7 @@ fn distension(
     }
     let free = at.solid.density / rho;
     let most = 2.0 * at_least(free, 1.0);
-    let start = at_least(free, 1.0);
+    let start = at_least(free * (1.0 + pressure / at.solid.bulk_modulus), 1.0);
     let alpha = root(1.0, most, start, |alpha| {
         let of = solid(alpha * rho);
         [of.pressure - alpha * pressure, rho * of.dp_drho - pressure]
@@ -173,8 +173,14 @@ impl CompactionLaw for HolmquistJohnsonCookCompaction {
         }
         let whole = at.solid.density / at.distension;
         let mu = at.compression - 1.0;
-        let (density, lock) = self.locked(at, &solid);
-        let locked = density / whole - 1.0;
+        // Virgin matter does not know where it will lock.
+        let virgin = at.compaction == 0.0 && !(at.crushes && mu > self.crush_strain);
+        let (locked, heat) = if virgin {
+            (self.crush_strain, 0.0)
+        } else {
+            let (density, of) = self.locked(at, &solid);
+            (density / whole - 1.0, of.dp_de / of.dp_drho)
+        };
         let mut compaction = at.compaction;
         let mut place = self.place(compaction, locked, at.solid);
         let crushes = at.crushes && mu > place.compression;
@@ -193,11 +199,11 @@ impl CompactionLaw for HolmquistJohnsonCookCompaction {
             pressure,
             dp_drho,
             // Heat moves the point of locking, and with it the line.
-            dp_de: compaction * dp_drho * lock.dp_de / lock.dp_drho,
+            dp_de: compaction * dp_drho * heat,
         };
         let (distension, of) = distension(at, pressure, &solid);
         let slope = if crushes {
-            (self.lock_pressure - self.crush_pressure) / (density - whole * (1.0 + self.crush_strain))
+            (self.lock_pressure - self.crush_pressure) / (whole * (locked - self.crush_strain))
         } else {
             dp_drho
         };

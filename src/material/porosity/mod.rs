@@ -391,7 +391,8 @@ fn root(mut low: f64, mut high: f64, start: f64, f: impl Fn(f64) -> [f64; 2]) ->
             low = x;
         }
         let newton = x - value / slope;
-        let inside = low < newton && newton < high;
+        // At the root itself a step of nothing ends on the bracket.
+        let inside = low <= newton && newton <= high;
         let next = if inside { newton } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;
