@@ -1,7 +1,10 @@
 //! Concrete of the library: its crush curve, unloading, damage by crushed pores, energy of a cycle, strength and sound.
 
 use crate::support::{equivalent, set_gradient, step};
-use material::{LANES, Material, PointBatch, Rest, library};
+use material::{
+    Compaction, HolmquistJohnsonCookCompaction, LANES, Material, PointBatch, Porosity, Rest,
+    library,
+};
 use nalgebra::{Matrix3, Vector3};
 
 /// Density of the whole (kg/m³), `[μ_crush, μ_lock]`, `[p_crush, p_lock]` (Pa), K₁ (Pa) of Holmquist, Johnson & Cook (1993).
@@ -99,6 +102,28 @@ fn pores_crush_along_their_curve_and_unload_along_lines() {
         assert!(
             (found / loading(most + 0.01)[0] - 1.0).abs() < 1e-9,
             "{most}"
+        );
+    }
+}
+
+/// Whatever the constants round to.
+#[test]
+fn virgin_concrete_has_no_pressure_to_the_bit() {
+    for n in 1..50 {
+        let mut concrete = concrete();
+        let distension = 1.0 + 0.003 * f64::from(n);
+        let law = HolmquistJohnsonCookCompaction {
+            crush_pressure: 0.7e6 * f64::from(n),
+            crush_strain: 0.000_13 * f64::from(n),
+            lock_pressure: 0.8e9,
+        };
+        let law = Compaction::HolmquistJohnsonCookCompaction(law);
+        let pores = Porosity::new(distension, law, 2700.0, &concrete.eos);
+        concrete.reference_density = pores.density;
+        concrete.porosity = Some(pores);
+        assert_eq!(
+            concrete.virgin(concrete.reference_density, 0.0).pressure,
+            0.0
         );
     }
 }

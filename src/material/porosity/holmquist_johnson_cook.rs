@@ -192,7 +192,12 @@ impl CompactionLaw for HolmquistJohnsonCookCompaction {
             compaction = at_least(at_most(x, 1.0), compaction);
             place = self.place(compaction, locked, at.solid);
         }
-        let pressure = place.pressure + place.modulus * (mu - place.compression);
+        let pressure = if compaction == 0.0 {
+            // Without pressure at rest, to the bit.
+            place.modulus * mu
+        } else {
+            place.pressure + place.modulus * (mu - place.compression)
+        };
         // Sound is that of release, which is faster than that of crushing.
         let dp_drho = place.modulus / whole;
         let response = PointResponse {
