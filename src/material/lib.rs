@@ -23,8 +23,8 @@ pub use eos::{
 };
 pub use point::*;
 pub use porosity::{
-    Compaction, CompactionDamage, CompactionLaw, EpsilonAlpha, PAlpha, Porosity, PorousPoint,
-    Solid, StrengthOf,
+    Compaction, CompactionDamage, CompactionLaw, EpsilonAlpha, HolmquistJohnsonCookCompaction,
+    PAlpha, Porosity, PorousPoint, Solid, StrengthOf,
 };
 pub use rest::{NEGLIGIBLE, Rest};
 pub use thermal::{Thermal, ThermalConstants};
@@ -417,12 +417,13 @@ impl Material {
             point::limit_expansion(batch, rho0, torn);
         }
         let before = [batch.distension, batch.compaction];
-        let (response, shares) = match (&self.porosity, &self.eos) {
+        let unshared = [[1.0; LANES], [0.0; LANES]];
+        let (response, [shares, crushed]) = match (&self.porosity, &self.eos) {
             (Some(porosity), _) if ALL => porosity.respond(&self.eos, batch, dt != 0.0),
-            (_, Eos::Jwl(explosive)) if ALL => (self.burn(explosive, batch, dt), [1.0; LANES]),
+            (_, Eos::Jwl(explosive)) if ALL => (self.burn(explosive, batch, dt), unshared),
             _ => {
                 let response = (self.eos).response(rho0, &batch.density, &batch.specific_energy);
-                (response, [1.0; LANES])
+                (response, unshared)
             }
         };
         batch.pressure = response.pressure;
@@ -435,6 +436,7 @@ impl Material {
         let mut now = Conditions::new(dt, rho0, moduli);
         now.options = self.failure.options;
         if ALL && let Some(porosity) = &self.porosity {
+            now.permanent = crushed;
             now.reference_shear_modulus = self.shear_modulus();
             for k in 0..LANES {
                 now.packing[k] = batch.distension[k] / porosity.distension;

@@ -4,6 +4,7 @@
 mod exact;
 
 mod ceramics;
+mod concrete;
 mod cracks;
 mod eos;
 mod exact_bars;

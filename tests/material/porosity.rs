@@ -2,8 +2,9 @@
 
 use crate::support::{material, step, tillotson};
 use material::{
-    Compaction, CompactionDamage, Effect, Elastic, Eos, EpsilonAlpha, Failure, GradyKipp, LANES,
-    Material, PAlpha, PointBatch, Porosity, Rest, Strength, StrengthOf, Value, VonMises,
+    Compaction, CompactionDamage, Effect, Elastic, Eos, EpsilonAlpha, Failure, GradyKipp,
+    HolmquistJohnsonCookCompaction, LANES, Material, PAlpha, PointBatch, Porosity, Rest, Strength,
+    StrengthOf, Value, VonMises,
 };
 use nalgebra::Matrix3;
 
@@ -45,6 +46,15 @@ fn epsilon_alpha(sound_speed: f64) -> EpsilonAlpha {
     }
 }
 
+/// A straight crush curve of the same pressures, as concrete has.
+fn straight(sound_speed: f64) -> HolmquistJohnsonCookCompaction {
+    HolmquistJohnsonCookCompaction {
+        crush_pressure: 80e6,
+        crush_strain: 80e6 * ALPHA / (SOLID * sound_speed * sound_speed),
+        lock_pressure: 700e6,
+    }
+}
+
 fn porous(law: Compaction, strength: Strength) -> Material {
     let eos = Eos::Tillotson(tillotson());
     let pores = Porosity::new(ALPHA, law, SOLID, &eos);
@@ -68,6 +78,10 @@ fn foams() -> Vec<(&'static str, Material)> {
         (
             "epsilon-alpha",
             Compaction::EpsilonAlpha(epsilon_alpha(4110.0)),
+        ),
+        (
+            "concrete",
+            Compaction::HolmquistJohnsonCookCompaction(straight(4110.0)),
         ),
     ];
     laws.map(|(name, law)| (name, porous(law, Strength::None)))

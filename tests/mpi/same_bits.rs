@@ -308,7 +308,7 @@ fn failure_on_any_ranks_and_through_restarts() {
     });
 }
 
-/// Pores that crush, by both laws, with strength of the matrix and damage: the same on any ranks, and through restarts
+/// Pores that crush, by all laws, with strength of the matrix and damage: the same on any ranks, and through restarts
 /// while they crush.
 #[test]
 #[ignore = "slow"]
@@ -318,6 +318,7 @@ fn pores_crush_alike_on_any_ranks_and_through_restarts() {
     let laws = [
         "p_alpha = { elastic_pressure = \"80 MPa\", solid_pressure = \"7 GPa\", sound_speed = \"4 km/s\" }",
         "epsilon_alpha = { transition_strain = -0.2, kappa = 0.98, sound_speed = \"4 km/s\" }",
+        "holmquist_johnson_cook = { crush_pressure = \"80 MPa\", crush_strain = 0.002, lock_pressure = \"7 GPa\" }",
     ];
     each(&laws, |law| {
         let (_keep, at) = folder();

@@ -2,7 +2,10 @@
 
 use super::Parts;
 use super::impact::{UNCUT, aluminium};
-use crate::{Compaction, Eos, PAlpha, Porosity, Strength};
+use crate::{
+    Compaction, Effect, Eos, Failure, HolmquistJohnsonCook, HolmquistJohnsonCookCompaction,
+    HolmquistJohnsonCookFailure, PAlpha, Polynomial, Porosity, Strength,
+};
 
 const FOAM: &str = "Jutzi, Benz & Michel (2008), Icarus 198, 242, section 5.1, after Herrmann (1969); as the tests of \
      Spheral quote it";
@@ -10,6 +13,13 @@ const SOLID: &str = "of aluminium-tillotson";
 const FLUID: &str = "without strength, as in that test";
 const QUADRATIC: &str = "Herrmann (1969), J. Appl. Phys. 40, 2490";
 const PLAIN: &str = "no steep beginning";
+const CONCRETE: &str = "concrete of 48 MPa of Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591, as later papers quote \
+     it; not checked against the paper";
+const GRAIN: &str = "1.1 times the 2440 kg/m³ of the whole, by the locking strain of .1; Holmquist, Johnson & Cook (1993), 14th Int. \
+     Symp. Ballistics, 591, as later papers quote it";
+const COLD: &str = "none: the law has no heat";
+const RATE: &str = "1/s, as in Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591";
+const LAW: &str = "as the law has it";
 
 records! {
     "aluminium-foam", "aluminium with 22 % of pores, P-alpha, without strength":
@@ -25,20 +35,82 @@ records! {
             ("eos.tillotson.least_density", UNCUT),
             ("", SOLID),
         ];
+    "concrete-48", "concrete of 48 MPa, Holmquist-Johnson-Cook strength, crushing and damage":
+        concrete(),
+        &[
+            ("eos.polynomial.gamma0", COLD),
+            ("strength.holmquist_johnson_cook.reference_rate", RATE),
+            ("failure.effect", LAW),
+            ("density", GRAIN),
+            ("", CONCRETE),
+        ];
 }
+
+/// Concrete of 48 `MPa`; the density is that of the solid.
+fn concrete() -> Parts {
+    let mut failure = Failure {
+        holmquist_johnson_cook: Some(HolmquistJohnsonCookFailure {
+            d1: 0.04,
+            d2: 1.0,
+            least_strain: 0.01,
+        }),
+        ..Failure::NONE
+    };
+    failure.options.effect = Effect::FrictionKept;
+    Parts {
+        density: 2440.0 * CONCRETE_DISTENSION,
+        eos: Eos::Polynomial(Polynomial {
+            k1: 85e9,
+            k2: -171e9,
+            k3: 208e9,
+            gamma0: 0.0,
+        }),
+        strength: Strength::HolmquistJohnsonCook(HolmquistJohnsonCook {
+            shear_modulus: 14.86e9,
+            a: 0.79,
+            b: 1.6,
+            c: 0.007,
+            n: 0.61,
+            compressive_strength: 48e6,
+            max_tension: 4e6,
+            max_strength: 7.0,
+            reference_rate: 1.0,
+        }),
+        thermal: None,
+        failure,
+    }
+}
+
+/// One and the locking strain.
+const CONCRETE_DISTENSION: f64 = 1.1;
 
 /// Pores of the record of a name, in a solid of this density (kg/m³).
 pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
-    (name == "aluminium-foam").then(|| {
-        let law = Compaction::PAlpha(PAlpha {
-            elastic_pressure: 80e6,
-            solid_pressure: 700e6,
-            exponent: 2.0,
-            transition_pressure: 0.0,
-            transition_distension: 1.0,
-            transition_exponent: 2.0,
-            sound_speed: 4110.0,
-        });
-        Porosity::new(1.275, law, density, eos)
-    })
+    let (distension, law) = match name {
+        "aluminium-foam" => {
+            let law = PAlpha {
+                elastic_pressure: 80e6,
+                solid_pressure: 700e6,
+                exponent: 2.0,
+                transition_pressure: 0.0,
+                transition_distension: 1.0,
+                transition_exponent: 2.0,
+                sound_speed: 4110.0,
+            };
+            (1.275, Compaction::PAlpha(law))
+        }
+        "concrete-48" => {
+            let law = HolmquistJohnsonCookCompaction {
+                crush_pressure: 16e6,
+                crush_strain: 0.001,
+                lock_pressure: 0.8e9,
+            };
+            (
+                CONCRETE_DISTENSION,
+                Compaction::HolmquistJohnsonCookCompaction(law),
+            )
+        }
+        _ => return None,
+    };
+    Some(Porosity::new(distension, law, density, eos))
 }

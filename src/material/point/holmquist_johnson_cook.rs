@@ -14,7 +14,8 @@
 //! of all deformation, elastic too; below the reference rate it counts as that.
 //!
 //! Stress returns at constant pressure, and tension ends at T, of which
-//! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. How pores crush is no part of this law.
+//! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. How pores crush says
+//! [`HolmquistJohnsonCookCompaction`](crate::HolmquistJohnsonCookCompaction).
 
 use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};

@@ -1,18 +1,17 @@
-//! Damage of concrete by plastic strain.
+//! Damage of concrete by plastic strain and by pores that crush.
 //!
 //! ```text
-//! dD = dε_p/ε_f,    ε_f = max[D₁ (p* + T*)^D₂, ε_min]
+//! dD = (dε_p + dμ_p)/ε_f,    ε_f = max[D₁ (p* + T*)^D₂, ε_min]
 //! ```
 //!
-//! with the pressures of [`HolmquistJohnsonCook`](super::HolmquistJohnsonCook), the strength that this law belongs to.
-//! Source: Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591, without the strain of
-//! pores that crush.
+//! with the permanent compression `μ_p` of a material that has [pores](crate::Porosity) and the pressures of [`HolmquistJohnsonCook`](super::HolmquistJohnsonCook), the strength that this law belongs to.
+//! Source: Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591.
 
 use super::{Conditions, LANES, Law, PointBatch};
 use crate::at_least;
 
 law! {
-    /// Damage by plastic strain.
+    /// Damage by plastic strain and crushed pores.
     HolmquistJohnsonCookFailure {
         /// Damage coefficient D₁: failure strain at `p* + T* = 1`.
         d1: "",
@@ -35,11 +34,11 @@ impl HolmquistJohnsonCookFailure {
         at_least(self.d1 * power, self.least_strain)
     }
 
-    /// Lane by lane: only what flows is damaged.
+    /// Lane by lane: only what flows or crushes is damaged.
     #[inline(never)]
     fn damage(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
-            let increment = now.plastic_increment[k];
+            let increment = now.plastic_increment[k] + at_least(now.permanent[k], 0.0);
             if increment > 0.0 {
                 let factor = now.options.strain_factor(point.id[k]);
                 let strain = factor * self.failure_strain(now.curves.above[k]);

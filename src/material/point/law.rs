@@ -171,6 +171,8 @@ pub struct Conditions {
     pub kept: Lanes,
     /// Growth of the cube root of damage by pores that have been crushed in the step.
     pub crushing: Lanes,
+    /// Growth of the permanent compression by pores that have been crushed in the step.
+    pub permanent: Lanes,
     /// Equivalent plastic strain of the step.
     pub plastic_increment: Lanes,
     /// Logarithmic derivative of the flow stress by the plastic strain, with the heat of the flow, where
@@ -223,6 +225,7 @@ impl Conditions {
             bulk_modulus,
             kept: [1.0; LANES],
             crushing: [0.0; LANES],
+            permanent: [0.0; LANES],
             plastic_increment: [0.0; LANES],
             hardening: [0.0; LANES],
             curves: Curves {

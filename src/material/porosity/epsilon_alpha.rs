@@ -21,7 +21,7 @@
 //! curve. Without a `c_e`, χ = 1 and α does not change above `ε_k`. The correction of that paper for thermal
 //! expansion of the solid is left out.
 
-use super::{CompactionLaw, PointResponse, PoreState, PorousPoint, Solid};
+use super::{CompactionLaw, PointResponse, PoreState, PorousPoint, Solid, modulus};
 use crate::{Contradiction, at_most};
 
 law! {
@@ -110,8 +110,8 @@ impl CompactionLaw for EpsilonAlpha {
         })
     }
 
-    fn sound_speed(&self) -> f64 {
-        self.sound_speed
+    fn bulk_modulus(&self, density: f64, solid: &Solid) -> f64 {
+        modulus(density, self.sound_speed, solid)
     }
 
     #[inline]
@@ -162,6 +162,7 @@ impl CompactionLaw for EpsilonAlpha {
             distension: alpha,
             compaction,
             share,
+            crushed: 0.0,
         }
     }
 }

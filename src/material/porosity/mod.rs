@@ -9,7 +9,7 @@
 //!
 //! (Herrmann 1969, J. Appl. Phys. 40, 2490; the factor 1/α of Carroll & Holt 1972, J. Appl. Phys. 43,
 //! 759). A law of compaction gives α. [`PAlpha`] makes it a function of the pressure, [`EpsilonAlpha`] of
-//! the volumetric strain. In both, matter loads and unloads elastically up to the place on the crush
+//! the volumetric strain, and [`HolmquistJohnsonCookCompaction`] gives the pressure of concrete. In all, matter loads and unloads elastically up to the place on the crush
 //! curve that it has reached, and beyond it the place moves and never returns.
 //!
 //! The reference density of a porous material is that of the whole, `ρ₀ = ρ_s0/α₀`: masses, volumes of
@@ -86,6 +86,16 @@ pub struct Porosity {
     pub solid: Solid,
 }
 
+/// Bulk modulus (Pa) of a density (kg/m³) and the bulk sound speed (m/s) of virgin matter; zero for that of the solid.
+fn modulus(density: f64, sound_speed: f64, solid: &Solid) -> f64 {
+    let speed = if sound_speed == 0.0 {
+        solid.sound_speed()
+    } else {
+        sound_speed
+    };
+    density * speed * speed
+}
+
 /// Reference state of the solid between pores.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
@@ -114,6 +124,8 @@ pub struct PorousPoint {
     pub compaction: f64,
     /// Share of a strain of the whole that strains the solid, `∂ ln(α ρ)/∂ ln ρ`.
     pub share: f64,
+    /// Growth of the permanent compression, that of the whole without pressure.
+    pub crushed: f64,
 }
 
 /// The state of a point that a law of compaction works on.
@@ -139,11 +151,22 @@ pub trait CompactionLaw: Listed {
     /// Contradiction of constants with the distension α₀ and the solid.
     fn contradicts(&self, distension: f64, solid: &Solid) -> Option<Contradiction>;
 
-    /// Bulk sound speed (m/s) of virgin matter; zero for that of the solid.
-    fn sound_speed(&self) -> f64;
+    /// Bulk modulus (Pa) of virgin matter of the whole, whose density is `density` (kg/m³).
+    fn bulk_modulus(&self, density: f64, solid: &Solid) -> f64;
 
     /// Distension of a place on the crush curve.
     fn crushed(&self, distension: f64, solid: &Solid, compaction: f64) -> f64;
+
+    /// Permanent compression `ρ/ρ₀ − 1` of a place on the crush curve.
+    #[inline]
+    fn permanent(
+        &self,
+        at: &PoreState,
+        _solid: &impl Fn(f64) -> PointResponse,
+        compaction: f64,
+    ) -> f64 {
+        at.distension / self.crushed(at.distension, at.solid, compaction) - 1.0
+    }
 
     /// The point at a density, with the solid's response as a function of the solid's density (kg/m³).
     fn advance(&self, at: &PoreState, solid: impl Fn(f64) -> PointResponse) -> PorousPoint;
@@ -178,9 +201,9 @@ macro_rules! laws {
                 }
             }
 
-            fn sound_speed(&self) -> f64 {
+            fn bulk_modulus(&self, density: f64, solid: &Solid) -> f64 {
                 match self {
-                    $( Self::$law(law) => CompactionLaw::sound_speed(law), )+
+                    $( Self::$law(law) => law.bulk_modulus(density, solid), )+
                 }
             }
 
@@ -206,7 +229,13 @@ macro_rules! laws {
                         std::array::from_fn(|k| {
                             let e = batch.specific_energy[k];
                             let at = self.state(batch.density[k], batch.compaction[k], crushes);
-                            law.advance(&at, |rho| eos.at(self.solid.density, rho, e))
+                            let solid = |rho| eos.at(self.solid.density, rho, e);
+                            let mut point = law.advance(&at, solid);
+                            if point.compaction > at.compaction {
+                                point.crushed = law.permanent(&at, &solid, point.compaction)
+                                    - law.permanent(&at, &solid, at.compaction);
+                            }
+                            point
                         })
                     } )+
                 }
@@ -221,6 +250,8 @@ laws! {
     p_alpha: PAlpha;
     /// Distension as a function of the volumetric strain.
     epsilon_alpha: EpsilonAlpha;
+    /// Crushing of concrete between two points.
+    holmquist_johnson_cook: HolmquistJohnsonCookCompaction;
 }
 
 /// Regularisation δ of the damage by compaction (Jutzi, Benz & Michel 2008).
@@ -249,11 +280,7 @@ impl Porosity {
     /// Bulk modulus (Pa) of virgin matter of the whole.
     #[must_use]
     pub fn bulk_modulus(&self) -> f64 {
-        let speed = match self.law.sound_speed() {
-            0.0 => self.solid.sound_speed(),
-            stated => stated,
-        };
-        self.density * speed * speed
+        self.law.bulk_modulus(self.density, &self.solid)
     }
 
     /// Share of the shear modulus of the strength that virgin matter of the whole has.
@@ -304,23 +331,25 @@ impl Porosity {
     }
 
     /// Pressures and derivatives of a batch, whose distension and compaction become those of its
-    /// densities and energies, and the shares of strain that the solid takes. Pores crush if
-    /// `crushes`.
+    /// densities and energies, the shares of strain that the solid takes, and the growth of the permanent
+    /// compression. Pores crush if `crushes`.
     pub(super) fn respond(
         &self,
         eos: &Eos,
         batch: &mut PointBatch,
         crushes: bool,
-    ) -> (Response, Lanes) {
+    ) -> (Response, [Lanes; 2]) {
         let points = eos.porous(self, batch, crushes);
         let (mut response, mut shares) = (Response::default(), [0.0; LANES]);
+        let mut crushed = [0.0; LANES];
         for (k, point) in points.iter().enumerate() {
             response.set(k, point.response);
             batch.distension[k] = point.distension;
             batch.compaction[k] = point.compaction;
             shares[k] = point.share;
+            crushed[k] = point.crushed;
         }
-        (response, shares)
+        (response, [shares, crushed])
     }
 
     /// Growth of the cube root of damage as compaction rises from `before` to `after`: the
@@ -362,7 +391,8 @@ fn root(mut low: f64, mut high: f64, start: f64, f: impl Fn(f64) -> [f64; 2]) ->
             low = x;
         }
         let newton = x - value / slope;
-        let inside = low < newton && newton < high;
+        // At the root itself a step of nothing ends on the bracket.
+        let inside = low <= newton && newton <= high;
         let next = if inside { newton } else { 0.5 * (low + high) };
         let step = (next - x).abs();
         x = next;

@@ -31,7 +31,7 @@
 //! The pressure and α at the end of a step are the roots of both equations at its density and energy, so
 //! that a step of any size leads to the same place as many small ones.
 
-use super::{CompactionLaw, PointResponse, PoreState, PorousPoint, Solid, root, whole};
+use super::{CompactionLaw, PointResponse, PoreState, PorousPoint, Solid, modulus, root, whole};
 use crate::{Contradiction, at_least};
 
 law! {
@@ -193,8 +193,8 @@ impl CompactionLaw for PAlpha {
         )
     }
 
-    fn sound_speed(&self) -> f64 {
-        self.sound_speed
+    fn bulk_modulus(&self, density: f64, solid: &Solid) -> f64 {
+        modulus(density, self.sound_speed, solid)
     }
 
     #[inline]
@@ -233,6 +233,7 @@ impl CompactionLaw for PAlpha {
                 distension: alpha,
                 compaction: at.compaction,
                 share,
+                crushed: 0.0,
             };
         }
         // All pores are crushed, or pressure and distension are on the curve.
@@ -243,6 +244,7 @@ impl CompactionLaw for PAlpha {
                 distension: 1.0,
                 compaction: 1.0,
                 share: 1.0,
+                crushed: 0.0,
             };
         }
         let pressure = root(reached, self.solid_pressure, reached, |pressure| {
@@ -266,6 +268,7 @@ impl CompactionLaw for PAlpha {
             distension: alpha,
             compaction,
             share,
+            crushed: 0.0,
         }
     }
 }

@@ -477,6 +477,15 @@ macro_rules! compaction_laws {
                 /// Bulk sound speed of virgin matter.
                 sound_speed: Placed<Velocity> = "0", NotNegative => "that of the solid";
             }
+            /// `porosity.holmquist_johnson_cook`: crushing of concrete between two points.
+            holmquist_johnson_cook: HolmquistJohnsonCookCompactionParams => HolmquistJohnsonCookCompaction {
+                /// Pressure from which on pores crush.
+                crush_pressure: Placed<Pressure>, Positive;
+                /// Compression at that pressure.
+                crush_strain: Spanned<f64>, Positive;
+                /// Pressure at which all pores are crushed.
+                lock_pressure: Placed<Pressure>, Positive;
+            }
         }
     };
 }
