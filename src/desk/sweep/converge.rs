@@ -20,7 +20,7 @@ type Run<'a> = (f64, &'a Answers);
 
 impl Converged {
     /// Reads the ends of a sweep over spacings: of each answer its values, coarsest first, and the
-    /// [estimate](super::richardson::Estimate) of its limit.
+    /// estimate of its limit by Richardson's rule.
     ///
     /// # Errors
     /// Those of [`Sweep::run`].

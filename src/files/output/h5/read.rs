@@ -33,7 +33,7 @@ impl SnapshotFile {
     ///
     /// # Errors
     /// [`ReadError::Open`] if it is no HDF5 file, [`ReadError::Layout`] if it holds no points, or
-    /// partitions that are not theirs; [`OutputError::OtherRun`] if it lies in the folder of another run.
+    /// partitions that are not theirs; [`results::OutputError::OtherRun`] if it lies in the folder of another run.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
         let mut snapshot = Self {
             gate: Gate::open(None, path)?,
