@@ -1,8 +1,8 @@
-//! The limiter of the linear artificial viscosity (theory page "Smoothed particle hydrodynamics").
+//! Limiters of the artificial viscosity (theory page "Smoothed particle hydrodynamics").
 
 use numerics::lanes::{F64x8, LANES, Lanes};
 
-/// What [`Limiter::rough`] is at a share of one: κ.
+/// κ, by which the curvature of a flow counts in the share of both terms.
 const ROUGH: f64 = 3.0;
 /// Closing speed over sound speed at which a neighbourhood takes all of the viscosity.
 const STRONG: f64 = 0.3;

@@ -22,9 +22,8 @@
 //! Below zero pressure the curves go on as straight lines. Stress returns at constant pressure.
 //! Tension ends at `−Y_i0/μ_i`, before what failure leaves of it.
 
-use super::drucker_prager::{ROOT_3, limit_at_tip};
+use super::drucker_prager::{ROOT_3, limit_at_tip, to_shear_strength};
 use super::lundborg::{contradiction, curve};
-use super::radial_return::to_flow_stress;
 use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
 use numerics::dispatch::{Vectorised, instructions};
@@ -187,14 +186,6 @@ impl Law for Collins {
     /// Return at constant pressure.
     #[inline(always)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
-        if now.dt == 0.0 {
-            return;
-        }
-        let mut flow_stress = [0.0; LANES];
-        for k in 0..LANES {
-            let strength = self.shear_strength(point.pressure[k], point.damage[k]);
-            flow_stress[k] = ROOT_3 * now.softening[k] * strength;
-        }
-        to_flow_stress(point, now, &flow_stress);
+        to_shear_strength(point, now, |p, damage| self.shear_strength(p, damage));
     }
 }

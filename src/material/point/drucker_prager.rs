@@ -68,6 +68,25 @@ pub(super) fn limit_at_tip(point: &mut PointBatch, cohesion: f64, friction: f64)
     }
 }
 
+/// Returns eight points at constant pressure to the shear strengths (Pa), compared with √J₂, of their pressures (Pa) and
+/// damage.
+#[inline(always)]
+pub(super) fn to_shear_strength(
+    point: &mut PointBatch,
+    now: &Conditions,
+    shear_strength: impl Fn(f64, f64) -> f64,
+) {
+    if now.dt == 0.0 {
+        return;
+    }
+    let mut flow_stress = [0.0; LANES];
+    for k in 0..LANES {
+        let strength = shear_strength(point.pressure[k], point.damage[k]);
+        flow_stress[k] = ROOT_3 * now.softening[k] * strength;
+    }
+    to_flow_stress(point, now, &flow_stress);
+}
+
 impl Law for DruckerPrager {
     const STATE: &'static [&'static str] = &["deviatoric_stress", "plastic_strain"];
     const FOLLOWS_STATE: bool = true;
@@ -103,14 +122,6 @@ impl Law for DruckerPrager {
     /// Return at constant pressure.
     #[inline(always)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
-        if now.dt == 0.0 {
-            return;
-        }
-        let mut flow_stress = [0.0; LANES];
-        for k in 0..LANES {
-            let strength = self.shear_strength(point.pressure[k], point.damage[k]);
-            flow_stress[k] = ROOT_3 * now.softening[k] * strength;
-        }
-        to_flow_stress(point, now, &flow_stress);
+        to_shear_strength(point, now, |p, damage| self.shear_strength(p, damage));
     }
 }

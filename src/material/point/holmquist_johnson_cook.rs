@@ -17,9 +17,8 @@
 //! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. How pores crush says
 //! [`HolmquistJohnsonCookCompaction`](crate::HolmquistJohnsonCookCompaction).
 
-use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};
-use super::{Conditions, LANES, Law, PointBatch, jaumann, strain_rates_squared};
+use super::{Conditions, LANES, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::elementary::{ln, pow};
@@ -115,23 +114,13 @@ impl Law for HolmquistJohnsonCook {
     /// The strengths at pressure and rate.
     #[inline(never)]
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        let still = point.velocity_gradient == [[0.0; LANES]; 9];
-        if still && point.deviatoric_stress == [[0.0; LANES]; 6] {
-            // Nothing flows, whatever the strength.
-            return;
-        }
-        let rate = F64x8(strain_rates_squared(point));
-        let strengths = Strengths {
-            law: self,
-            pressure: &point.pressure,
-            rate: &rate,
-        };
-        let [above, intact, fractured] = instructions().run(strengths);
-        now.curves = Curves {
-            above: above.0,
-            intact: intact.0,
-            fractured: fractured.0,
-        };
+        now.curves.follow(point, |rate| {
+            instructions().run(Strengths {
+                law: self,
+                pressure: &point.pressure,
+                rate,
+            })
+        });
     }
 
     #[inline(always)]

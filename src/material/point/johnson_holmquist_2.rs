@@ -16,9 +16,8 @@
 //! [`FrictionKept`](super::Effect::FrictionKept) leaves `T (1 − D)`. Damage and the pressure by bulking are those of
 //! [`JohnsonHolmquist2Failure`](super::JohnsonHolmquist2Failure), which reads the two strengths from the [`Conditions`].
 
-use super::law::Curves;
 use super::radial_return::{positive, to_flow_stress};
-use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann, strain_rates_squared};
+use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
 use crate::at_least;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::elementary::{ln, pow};
@@ -138,23 +137,13 @@ impl Law for JohnsonHolmquist2 {
     /// The strengths at pressure and rate.
     #[inline(never)]
     fn soften(&self, point: &PointBatch, now: &mut Conditions) {
-        let still = point.velocity_gradient == [[0.0; LANES]; 9];
-        if still && point.deviatoric_stress == [[0.0; LANES]; 6] {
-            // Nothing flows, whatever the strength.
-            return;
-        }
-        let rate = F64x8(strain_rates_squared(point));
-        let strengths = Strengths {
-            law: self,
-            pressure: &point.pressure,
-            rate: &rate,
-        };
-        let [above, intact, fractured] = instructions().run(strengths);
-        now.curves = Curves {
-            above: above.0,
-            intact: intact.0,
-            fractured: fractured.0,
-        };
+        now.curves.follow(point, |rate| {
+            instructions().run(Strengths {
+                law: self,
+                pressure: &point.pressure,
+                rate,
+            })
+        });
     }
 
     #[inline(always)]

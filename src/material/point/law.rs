@@ -1,9 +1,10 @@
 //! Interface of a law of the material point, and the way those of a material act together.
 
 use super::failure::FailureOptions;
-use super::{LANES, Lanes, PointBatch};
+use super::{LANES, Lanes, PointBatch, strain_rates_squared};
 use crate::ThermalConstants;
 use crate::declare::Listed;
+use numerics::lanes::F64x8;
 
 /// Constants that cannot go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,6 +197,27 @@ pub struct Curves {
 }
 
 impl Curves {
+    /// Takes what `strengths` gives for the squares of the deviatoric rates of deformation (1/s²) of points that may flow:
+    /// `above`, intact and fractured strength.
+    #[inline(always)]
+    pub(super) fn follow(
+        &mut self,
+        point: &PointBatch,
+        strengths: impl FnOnce(&F64x8) -> [F64x8; 3],
+    ) {
+        let still = point.velocity_gradient == [[0.0; LANES]; 9];
+        if still && point.deviatoric_stress == [[0.0; LANES]; 6] {
+            // Nothing flows, whatever the strength.
+            return;
+        }
+        let [above, intact, fractured] = strengths(&F64x8(strain_rates_squared(point)));
+        *self = Self {
+            above: above.0,
+            intact: intact.0,
+            fractured: fractured.0,
+        };
+    }
+
     /// Strength (Pa) of lane k at a damage.
     #[inline(always)]
     pub(super) fn at(&self, k: usize, damage: f64) -> f64 {

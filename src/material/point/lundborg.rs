@@ -13,9 +13,8 @@
 //! Stress returns at constant pressure. Tension ends where the strength does. Damage takes its
 //! share of Y₀, `(1 − D) Y₀`, and friction stays.
 
-use super::drucker_prager::{ROOT_3, limit_at_tip};
-use super::radial_return::to_flow_stress;
-use super::{Conditions, Contradiction, LANES, Law, PointBatch, jaumann};
+use super::drucker_prager::{ROOT_3, limit_at_tip, to_shear_strength};
+use super::{Conditions, Contradiction, Law, PointBatch, jaumann};
 use crate::{at_least, at_most};
 
 law! {
@@ -93,14 +92,6 @@ impl Law for Lundborg {
     /// Return at constant pressure.
     #[inline(always)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
-        if now.dt == 0.0 {
-            return;
-        }
-        let mut flow_stress = [0.0; LANES];
-        for k in 0..LANES {
-            let strength = self.shear_strength(point.pressure[k], point.damage[k]);
-            flow_stress[k] = ROOT_3 * now.softening[k] * strength;
-        }
-        to_flow_stress(point, now, &flow_stress);
+        to_shear_strength(point, now, |p, damage| self.shear_strength(p, damage));
     }
 }
