@@ -16,12 +16,17 @@ const OLIVINE_SHEAR: &str = "olivine of Mao et al. (2015), Earth Planet. Sci. Le
 const GRANITE: &str =
     "Collins et al. (2004), Meteorit. Planet. Sci. 39, 217, as miluphcuda quotes it";
 const GRANITE_SHEAR: &str = "miluphcuda, material-config/material_data/Granite.cfg";
-const GRANITE_DAMAGE: &str = "Collins et al. (2004), Meteorit. Planet. Sci. 39, 217, as SALEc-2D \
-     has them";
+const GRANITE_DAMAGE: &str = "Collins et al. (2004), Meteorit. Planet. Sci. 39, 217, as OpenSPH \
+     quotes it: where the curves of intact and of broken granite cross";
 const GRANITE_TENSION: &str = "Westerly granite: Dowling (2013), Mechanical behavior of materials, \
      table 3.10; slow tests, and impacts need more";
 const BASALT: &str = "basalt of inputs for iSALE and SALEc-2D: Dey, Lonar crater, material.inp; Li, \
      utopia.inp";
+const BASALT_LIMIT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, and of inputs for iSALE";
+const GRANITE_FRICTION: &str = "intact and broken granite of Collins et al. (2004), Meteorit. \
+     Planet. Sci. 39, 217, which OpenSPH has for basalt too";
+const BASALT_TRANSITIONS: &str = "SALEc-2D; with a limit of 3.5 GPa the curves of intact and of \
+     broken rock cross at 2.7 GPa, as Collins et al. (2004) define the first";
 const BASALT_SHEAR: &str =
     "basalt of Benz & Asphaug (1999), Icarus 142, 5, in the codes named above";
 const FLAWS: &str = "fitted by Benz & Asphaug (1999), Icarus 142, 5, to Nakamura & Fujiwara (1991)";
@@ -43,13 +48,39 @@ const SAME: &str = "that of intact rock";
 const FADES: &str = "as the laws have it";
 
 records! {
-    "basalt-tillotson", "basalt to vaporisation: friction, flaws, and shear damage":
+    "basalt-tillotson", "basalt of the laboratory, to vaporisation: friction, flaws, and shear damage":
+        rock(
+            tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
+            Strength::Collins(collins([22.7e9, 90e6, 2.0, 3.5e9], [0.0, 0.8])),
+            Failure {
+                collins: Some(CollinsFailure {
+                    brittle_ductile: 2.7e9,
+                    brittle_plastic: 4.1e9,
+                }),
+                grady_kipp: Some(flaws(4e35, 9.0)),
+                ..Failure::NONE
+            },
+        ),
+        &[
+            ("strength.collins.shear_modulus", BASALT_SHEAR),
+            ("strength.collins.max_strength", BASALT_LIMIT),
+            ("strength.collins.damaged_max_strength", SAME),
+            ("strength.collins.softening", OFF),
+            ("strength.collins.simon", OFF),
+            ("strength", GRANITE_FRICTION),
+            ("failure.collins", BASALT_TRANSITIONS),
+            ("failure.grady_kipp.crack_speed", CRACKS),
+            ("failure.grady_kipp", FLAWS),
+            ("failure.effect", FADES),
+            ("eos.tillotson.least_density", UNCUT),
+            ("", TILLOTSON),
+        ];
+    "basalt-field", "basalt of the ground, weak by joints: friction and shear damage, for craters of metres and more":
         rock(
             tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
             Strength::Collins(collins([22.7e9, 10e6, 1.2, 3.5e9], [10e3, 0.6])),
             Failure {
                 ivanov: Some(SHEAR),
-                grady_kipp: Some(flaws(4e35, 9.0)),
                 ..Failure::NONE
             },
         ),
@@ -59,10 +90,8 @@ records! {
             ("strength.collins.softening", OFF),
             ("strength.collins.simon", OFF),
             ("strength", BASALT),
-            ("failure.ivanov", IVANOV),
-            ("failure.grady_kipp.crack_speed", CRACKS),
-            ("failure.grady_kipp", FLAWS),
             ("failure.effect", FADES),
+            ("failure", IVANOV),
             ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
@@ -93,8 +122,8 @@ records! {
             Failure {
                 principal_stress: Some(PrincipalStress { limit: 9.58e6 }),
                 collins: Some(CollinsFailure {
-                    brittle_ductile: 2.7e9,
-                    brittle_plastic: 4.1e9,
+                    brittle_ductile: 1.23e9,
+                    brittle_plastic: 2.35e9,
                 }),
                 ..Failure::NONE
             },
