@@ -142,6 +142,104 @@ fn the_reference_state_is_of_its_temperature() {
     assert!((ideal.bulk_modulus() / (GAMMA * p) - 1.0).abs() < 1e-10);
 }
 
+/// Numbers in columns of a width, five a line; flags after the fifth where the layout has them.
+fn columns_of(numbers: &[f64], width: usize, flags: &str) -> String {
+    let mut text = String::new();
+    for line in numbers.chunks(5) {
+        for x in line {
+            let digits = if width == 22 { 15 } else { 8 };
+            // As Fortran writes: two digits of exponent, or three without a letter.
+            let word = format!("{x:.digits$e}");
+            let (digits, exponent) = word.split_once('e').unwrap();
+            let exponent: i32 = exponent.parse().unwrap();
+            let sign = if exponent < 0 { '-' } else { '+' };
+            let word = match exponent.abs() {
+                far @ 100.. => format!("{digits}{sign}{far}"),
+                near => format!("{digits}E{sign}{near:02}"),
+            };
+            let _ = write!(text, "{word:>width$}");
+        }
+        let _ = writeln!(text, "{}", if line.len() == 5 { flags } else { "" });
+    }
+    text
+}
+
+/// A record 301 of the stiffened gas: g/cm³, K, GPa, MJ/kg.
+fn record(columns: i32, rows: i32) -> Vec<f64> {
+    let (rho, t) = (nodes(100.0, 4000.0, columns), nodes(50.0, 5000.0, rows));
+    let mut numbers = vec![f64::from(columns), f64::from(rows)];
+    numbers.extend(rho.iter().map(|rho| rho / 1e3));
+    numbers.extend(&t);
+    for (which, unit) in [(1, 1e9), (0, 1e6)] {
+        for t in &t {
+            numbers.extend(rho.iter().map(|rho| state(2e8, *rho, *t)[which] / unit));
+        }
+    }
+    numbers
+}
+
+/// A file of Los Alamos: a comment, material, and states.
+fn los_alamos(numbers: &[f64], width: usize, material: u32) -> String {
+    let head = |index: u32, record: u32, count: usize| {
+        format!("{index:2}{material:6}{record:6}{count:6}   r   82803   22704 1\n")
+    };
+    format!(
+        "{}{:80}\n{:80}\n{}{}{}{}",
+        head(0, 101, 100),
+        "material: a stiffened gas 1 2 3",
+        "of two lines",
+        head(1, 201, 5),
+        columns_of(&[13.0, 26.98, 1.0, 0.1, 0.0], width, "11111"),
+        head(1, 301, numbers.len()),
+        columns_of(numbers, width, "11111"),
+    )
+}
+
+/// Files of SESAME in three widths give what the layout of SWIFT gives, to the digits that they hold.
+#[test]
+fn files_of_sesame_are_read() {
+    let numbers = record(20, 20);
+    let aneos = format!(
+        " INDEX      MATID =      1    NWDS =        9\n{} RECORD     TYPE =  201     NWDS =        5\n{} \
+         RECORD     TYPE =  301     NWDS = {:8}\n{}",
+        columns_of(&[1.0; 9], 16, ""),
+        columns_of(&[13.0, 26.98, 1.0, 0.1, 298.0], 16, ""),
+        numbers.len(),
+        columns_of(&numbers, 16, ""),
+    );
+    let plain = tabled(&of(2e8, 20, 20));
+    for (text, digits) in [
+        (los_alamos(&numbers, 15, 3720), 1e-7),
+        (los_alamos(&numbers, 22, 3720), 1e-12),
+        (aneos, 1e-7),
+    ] {
+        let table = tabled(&text);
+        for (rho, e) in [(200.0, 1e6), (1000.0, 5e5), (3900.0, 2e6)] {
+            let ((p, c), (of_p, of_c)) = (at(&table, rho, e), at(&plain, rho, e));
+            assert!((p - of_p).abs() < digits * (of_p.abs() + 2e8), "{p} {of_p}");
+            assert!((c / of_c - 1.0).abs() < 10.0 * digits, "{c} {of_c}");
+        }
+    }
+    // Numbers of three digits of exponent touch their letterless exponent.
+    let mut small = numbers.clone();
+    small[2 + 20 + 20] = 1e-101;
+    assert!(columns_of(&small, 15, "").contains("-101"));
+    let _ = Grid::read(&los_alamos(&small, 15, 3720));
+
+    let said = |text: &str| Grid::read(text).expect_err("no table");
+    let sound = los_alamos(&numbers, 15, 3720);
+    let cut = sound.len() - 200;
+    assert!(said(&sound[..cut]).contains("the file ends before the"));
+    let two = format!("{sound}{}", los_alamos(&numbers, 15, 3721));
+    assert_eq!(
+        said(&two),
+        "it holds the materials 3720 and 3721: a file is to hold one"
+    );
+    assert!(said(&sound.replace("   301", "   303")).contains("it has no record 301"));
+    assert!(said(&los_alamos(&numbers[..300], 15, 1)).contains("too few for 20 densities"));
+    assert!(said(&sound.replace("E+01", "F+01")).contains("is no number"));
+}
+
 #[test]
 fn what_is_no_table_is_refused() {
     let sound = of(2e8, 10, 10);
@@ -218,7 +316,12 @@ fn what_is_no_table_is_refused() {
 /// A few thousand texts with bytes changed are read or refused, without a panic.
 #[test]
 fn any_text_is_read_or_refused() {
-    let sound = of(2e8, 5, 5).into_bytes();
+    for sound in [of(2e8, 5, 5), los_alamos(&record(5, 5), 15, 1)] {
+        changed(sound.as_bytes());
+    }
+}
+
+fn changed(sound: &[u8]) {
     let mut seed = 0x9E37_79B9_7F4A_7C15_u64;
     let mut drawn = move || {
         seed ^= seed << 13;
@@ -228,7 +331,7 @@ fn any_text_is_read_or_refused() {
     };
     let letters = b"0123456789.e-+ \n#naifx";
     for _ in 0..3000 {
-        let mut bytes = sound.clone();
+        let mut bytes = sound.to_vec();
         for _ in 0..=drawn() % 4 {
             let place = usize::try_from(drawn() % bytes.len() as u64).unwrap();
             bytes[place] = letters[usize::try_from(drawn() % letters.len() as u64).unwrap()];

@@ -3,6 +3,8 @@
 //! One is a file that implements [`EquationOfState`]; its row here gives it a name and a key of the input, its rows in
 //! `input/schema/materials.rs` its constants.
 
+mod sesame;
+
 use super::{Constants, Contradiction, LANES, Lanes, Listed, PointBatch, Porosity, PorousPoint};
 
 /// Pressure and its derivatives at one state.

@@ -1,6 +1,6 @@
 //! An equation of state as a table of densities and temperatures, such as ANEOS makes.
 //!
-//! The text is that which SWIFT and its `WoMa` read, in SI units: lines of comments that begin with `#`, a version,
+//! The text is a record 301 of [SESAME](super::sesame), or that which SWIFT and its `WoMa` read, in SI units: lines of comments that begin with `#`, a version,
 //! the numbers of densities and temperatures, the densities, the temperatures, and then for each temperature,
 //! and for each density at it, specific energy, pressure, sound speed and specific entropy. Rows of zero
 //! density or temperature are left out.
@@ -25,7 +25,7 @@
 
 use std::sync::Arc;
 
-use super::{EquationOfState, PointResponse};
+use super::{EquationOfState, PointResponse, sesame};
 use crate::Listed;
 use crate::declare::{Constants, Value};
 
@@ -61,11 +61,48 @@ struct Cell {
 }
 
 impl Grid {
-    /// Reads the text of a table.
+    /// Reads the text of a table, in either layout.
     ///
     /// # Errors
     /// The fault, in words.
     pub fn read(text: &str) -> Result<Self, String> {
+        let mut grid = match sesame::states(text)? {
+            Some(numbers) => Self::of_sesame(&numbers)?,
+            None => Self::of_swift(text)?,
+        };
+        grid.drop_zeros();
+        grid.check()?;
+        Ok(grid)
+    }
+
+    /// From the numbers of a record of SESAME.
+    fn of_sesame(numbers: &[f64]) -> Result<Self, String> {
+        let count = |k: usize, what: &str| nodes(numbers.get(k).copied().unwrap_or(0.0), what);
+        let columns = count(0, "the number of densities")?;
+        let rows = count(1, "the number of temperatures")?;
+        if numbers.len() < 2 + columns + rows + 2 * columns * rows {
+            return Err(format!(
+                "its record has {} numbers, too few for {columns} densities and {rows} temperatures",
+                numbers.len()
+            ));
+        }
+        let (densities, rest) = numbers[2..].split_at(columns);
+        let (temperatures, rest) = rest.split_at(rows);
+        // g/cm³, GPa and MJ/kg.
+        let turned = |values: &[f64], unit: f64| {
+            let by_density = (0..columns).flat_map(|c| (0..rows).map(move |r| r * columns + c));
+            by_density.map(|k| values[k] * unit).collect()
+        };
+        Ok(Self {
+            densities: densities.iter().map(|rho| rho * 1e3).collect(),
+            temperatures: temperatures.to_vec(),
+            pressures: turned(rest, 1e9),
+            energies: turned(&rest[columns * rows..], 1e6),
+        })
+    }
+
+    /// From the layout of SWIFT.
+    fn of_swift(text: &str) -> Result<Self, String> {
         let body = text.lines().enumerate();
         let mut numbers = body
             .filter(|(_, line)| !line.trim_start().starts_with('#'))
@@ -84,15 +121,7 @@ impl Grid {
             }
         };
         next("its version")?;
-        let mut count = |what: &str| {
-            let number = next(what)?;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the range
-            if number.fract() == 0.0 && (3.0..=f64::from(MOST_NODES)).contains(&number) {
-                Ok(number as usize)
-            } else {
-                Err(format!("{what} must be a whole number from 3 to {MOST_NODES}, and is {number}"))
-            }
-        };
+        let mut count = |what: &str| nodes(next(what)?, what);
         let columns = count("the number of densities")?;
         let rows = count("the number of temperatures")?;
         // Each number takes a digit and a space.
@@ -123,15 +152,12 @@ impl Grid {
         if let Some((line, _)) = numbers.next() {
             return Err(format!("line {line}: more than its numbers say"));
         }
-        let mut grid = Self {
+        Ok(Self {
             densities,
             temperatures,
             energies,
             pressures,
-        };
-        grid.drop_zeros();
-        grid.check()?;
-        Ok(grid)
+        })
     }
 
     /// Leaves out a first density and a first temperature of zero.
@@ -185,8 +211,8 @@ impl Grid {
         if error > MOST_ERROR {
             return Err(format!(
                 "its pressures and energies do not belong together: the error of ρ² ∂e/∂ρ = p − T ∂p/∂T is {:.0} % \
-                 in half of its cells, and may be {:.0} %; are its units SI, and its columns energy, pressure, \
-                 sound speed and entropy?",
+                 in half of its cells, and may be {:.0} %; are its units those of its layout, and its columns \
+                 in order?",
                 1e2 * error,
                 1e2 * MOST_ERROR
             ));
@@ -308,8 +334,18 @@ fn mix([a, b]: [f64; 2], share: f64) -> f64 {
     (1.0 - share) * a + share * b
 }
 
+/// A count of nodes.
+fn nodes(number: f64, what: &str) -> Result<usize, String> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the range
+    if number.fract() == 0.0 && (3.0..=f64::from(MOST_NODES)).contains(&number) {
+        Ok(number as usize)
+    } else {
+        Err(format!("{what} must be a whole number from 3 to {MOST_NODES}, and is {number}"))
+    }
+}
+
 /// The first letters of a word of a file.
-fn shortened(word: &str) -> String {
+pub(super) fn shortened(word: &str) -> String {
     word.chars().take(20).collect()
 }
 

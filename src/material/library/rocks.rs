@@ -22,7 +22,8 @@ const GRANITE_TENSION: &str = "Westerly granite: Dowling (2013), Mechanical beha
      table 3.10; slow tests, and impacts need more";
 const BASALT: &str = "basalt of inputs for iSALE and SALEc-2D: Dey, Lonar crater, material.inp; Li, \
      utopia.inp";
-const BASALT_LIMIT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, and of inputs for iSALE";
+const BASALT_LIMIT: &str =
+    "basalt of Benz & Asphaug (1999), Icarus 142, 5, and of inputs for iSALE";
 const GRANITE_FRICTION: &str = "intact and broken granite of Collins et al. (2004), Meteorit. \
      Planet. Sci. 39, 217, which OpenSPH has for basalt too";
 const BASALT_TRANSITIONS: &str = "SALEc-2D; with a limit of 3.5 GPa the curves of intact and of \
