@@ -25,6 +25,7 @@ fn basalt(crosses: Crosses, flaws: Flaws) -> Material {
         crosses,
         flaws,
         most_flaws: 0.0,
+        least_size: 0.0,
     });
     basalt.failure.options.effect = Effect::Scaled;
     basalt
@@ -118,6 +119,21 @@ fn drawn_flaws_scatter_about_the_continuous_count() {
         first += points.first_flaw.iter().map(x).sum::<f64>();
     }
     assert!((first / n as f64 - 1.0).abs() < 3.0 / (n as f64).sqrt());
+}
+
+/// Particles below the least size have the strength of one of that size, those above their own.
+#[test]
+fn no_particle_counts_as_smaller_than_the_least_size() {
+    let plain = basalt(Crosses::Particle, Flaws::Drawn);
+    let mut bounded = basalt(Crosses::Particle, Flaws::Drawn);
+    bounded.failure.grady_kipp.as_mut().unwrap().least_size = 1e-3;
+    let of = |basalt: &Material, volume: f64| peak(basalt, 1e3, volume, 0, 500.0);
+    let near = |a: [f64; LANES], b: [f64; LANES]| {
+        a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-12)
+    };
+    assert!(near(of(&bounded, 1e-10), of(&plain, 1e-9)));
+    assert!(!near(of(&plain, 1e-10), of(&plain, 1e-9)));
+    assert!(near(of(&bounded, 8e-9), of(&plain, 8e-9)));
 }
 
 /// With a limit of flaws, a particle is damaged no more than the share that is active.

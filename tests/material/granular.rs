@@ -479,6 +479,7 @@ fn cracks_and_tension_go_with_friction() {
             crosses: Crosses::Particle,
             flaws: Flaws::Continuous,
             most_flaws: 0.0,
+            least_size: 0.0,
         }),
         ..Failure::NONE
     };

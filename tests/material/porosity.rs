@@ -338,6 +338,7 @@ fn crushing_damages() {
             crosses: material::Crosses::Particle,
             flaws: material::Flaws::Drawn,
             most_flaws: 0.0,
+            least_size: 0.0,
         }),
         ..foam.failure
     };

@@ -28,6 +28,7 @@ const INPUTS: &[&str] = &[
     "nakamura-1991",
     "noh",
     "oblique-30",
+    "ogive-on-concrete",
     "ogive-on-weldox",
     "punch",
     "quarter-impact",

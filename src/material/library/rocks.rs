@@ -31,6 +31,8 @@ const BASALT_TRANSITIONS: &str = "SALEc-2D; with a limit of 3.5 GPa the curves o
 const BASALT_SHEAR: &str =
     "basalt of Benz & Asphaug (1999), Icarus 142, 5, in the codes named above";
 const FLAWS: &str = "fitted by Benz & Asphaug (1999), Icarus 142, 5, to Nakamura & Fujiwara (1991)";
+const FITTED_SIZE: &str = "the size with which the flaws give the largest fragment of Nakamura & \
+     Fujiwara (1991), Icarus 92, 132";
 const ICE_FLAWS: &str = "Benz & Asphaug (1999), Icarus 142, 5, as miluphcuda quotes it; Schäfer et \
      al. (2016) have 1e46/m³, 9.1";
 const CRACKS: &str = "Grady & Kipp (1980), Int. J. Rock Mech. Min. Sci. 17, 147";
@@ -58,7 +60,7 @@ records! {
                     brittle_ductile: 2.7e9,
                     brittle_plastic: 4.1e9,
                 }),
-                grady_kipp: Some(flaws(4e35, 9.0)),
+                grady_kipp: Some(flaws(4e35, 9.0, 1e-3)),
                 ..Failure::NONE
             },
         ),
@@ -71,6 +73,7 @@ records! {
             ("strength", GRANITE_FRICTION),
             ("failure.collins", BASALT_TRANSITIONS),
             ("failure.grady_kipp.crack_speed", CRACKS),
+            ("failure.grady_kipp.least_size", FITTED_SIZE),
             ("failure.grady_kipp", FLAWS),
             ("failure.effect", FADES),
             ("eos.tillotson.least_density", UNCUT),
@@ -151,7 +154,7 @@ records! {
                     hardening_modulus: 0.0,
                 }),
                 Failure {
-                    grady_kipp: Some(flaws(1.4e38, 9.6)),
+                    grady_kipp: Some(flaws(1.4e38, 9.6, 0.0)),
                     ..Failure::NONE
                 },
             );
@@ -238,8 +241,8 @@ fn collins(
     }
 }
 
-/// Weibull's k (1/m³) and m.
-fn flaws(k: f64, m: f64) -> GradyKipp {
+/// Weibull's k (1/m³) and m, and the least size (m) that they hold for.
+fn flaws(k: f64, m: f64, least_size: f64) -> GradyKipp {
     GradyKipp {
         k,
         m,
@@ -247,6 +250,7 @@ fn flaws(k: f64, m: f64) -> GradyKipp {
         crosses: Crosses::Particle,
         flaws: Flaws::Drawn,
         most_flaws: 0.0,
+        least_size,
     }
 }
 

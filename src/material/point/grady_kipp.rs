@@ -20,6 +20,10 @@
 //! simulations with fracture*, Icarus 107, 98, hand flaws to particles one after the other.) Beyond
 //! [`DRAWN`] of them the count is x itself, whose scatter is a thousandth there and less.
 //!
+//! Constants that were fitted with particles of some size hold for that size: a particle without an active flaw bears
+//! any tension, since no crack of a neighbour grows into it, so smaller ones are stronger by `Δp^{−3/m}` without end. So none
+//! counts as smaller than a least size.
+//!
 //! **R** is that of the particle's own sphere, `(3V/4π)^{1/3}`, for which the point obeys Grady and
 //! Kipp's law with `α' = 36π c_g³ k/(m + 3)³`; or, as in other codes, of the support of the kernel
 //! at h = 1.3 Δp, which a crack then has to cross: the growth is slower and the strength larger, by
@@ -102,6 +106,9 @@ law! {
         /// Flaws of a particle: damage is `n/N` at most as long as n of N are active. Zero for no
         /// such limit.
         most_flaws: "",
+        /// Edge (m) of the smallest cube that flaws are drawn for: smaller particles have the flaws, and the way of
+        /// cracks, of one.
+        least_size: "m",
     }
 }
 
@@ -175,7 +182,7 @@ impl Law for GradyKipp {
             if damage >= FAILED || !may_exceed(point, k, point.first_flaw[k] * stiffness) {
                 continue;
             }
-            let size = now.size(point, k);
+            let size = at_least(now.size(point, k), self.least_size);
             let (scale, seed) = (self.k * size * size * size, now.options.seed);
             self.begin(point, k, scale, seed);
             // The weakest flaw is active as long as the strain is that of it.

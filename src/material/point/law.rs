@@ -491,6 +491,7 @@ mod tests {
             crosses: Crosses::Particle,
             flaws: Flaws::Drawn,
             most_flaws: 0.0,
+            least_size: 0.0,
         });
         vec![
             spall(AfterSpall::Hold),

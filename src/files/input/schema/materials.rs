@@ -5,8 +5,8 @@ use toml::Spanned;
 
 use crate::input::forms::OrNone;
 use crate::input::quantity::{
-    Density, FractureEnergy, NumberDensity, PerPressure, PerTemperature, Placed, Pressure, Rate,
-    SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
+    Density, FractureEnergy, Length, NumberDensity, PerPressure, PerTemperature, Placed, Pressure,
+    Rate, SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
 use material::{
     AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
@@ -439,6 +439,8 @@ macro_rules! failure_laws {
                 flaws: Spanned<Flaws> = Flaws::Drawn;
                 /// Flaws of a particle.
                 most_flaws: Spanned<f64> = 0.0, NotNegative => "no limit";
+                /// Least size of what flaws are drawn for.
+                least_size: Placed<Length> = "0", NotNegative => "none";
             }
         }
     };
