@@ -22,7 +22,8 @@ const GRANITE_TENSION: &str = "Westerly granite: Dowling (2013), Mechanical beha
      table 3.10; slow tests, and impacts need more";
 const BASALT: &str = "basalt of inputs for iSALE and SALEc-2D: Dey, Lonar crater, material.inp; Li, \
      utopia.inp";
-const BASALT_LIMIT: &str = "basalt of Benz & Asphaug (1999), Icarus 142, 5, and of inputs for iSALE";
+const BASALT_LIMIT: &str =
+    "basalt of Benz & Asphaug (1999), Icarus 142, 5, and of inputs for iSALE";
 const GRANITE_FRICTION: &str = "intact and broken granite of Collins et al. (2004), Meteorit. \
      Planet. Sci. 39, 217, which OpenSPH has for basalt too";
 const BASALT_TRANSITIONS: &str = "SALEc-2D; with a limit of 3.5 GPa the curves of intact and of \
@@ -50,7 +51,7 @@ const FADES: &str = "as the laws have it";
 records! {
     "basalt-tillotson", "basalt of the laboratory, to vaporisation: friction, flaws, and shear damage":
         rock(
-            tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
+            basalt(),
             Strength::Collins(collins([22.7e9, 90e6, 2.0, 3.5e9], [0.0, 0.8])),
             Failure {
                 collins: Some(CollinsFailure {
@@ -77,7 +78,7 @@ records! {
         ];
     "basalt-field", "basalt of the ground, weak by joints: friction and shear damage, for craters of metres and more":
         rock(
-            tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
+            basalt(),
             Strength::Collins(collins([22.7e9, 10e6, 1.2, 3.5e9], [10e3, 0.6])),
             Failure {
                 ivanov: Some(SHEAR),
@@ -195,6 +196,16 @@ const SHEAR: Ivanov = Ivanov {
     slope: 1e-11,
     pressure: 300e6,
 };
+
+/// Basalt without pores.
+pub(super) fn basalt() -> (f64, Tillotson) {
+    tillotson(
+        2700.0,
+        [0.5, 1.5, 26.7e9, 26.7e9],
+        [487e6, 4.72e6, 18.2e6],
+        [5.0, 5.0],
+    )
+}
 
 /// Density (kg/m³), `[a, b, A (Pa), B (Pa)]`, `[E₀, e_iv, e_cv]` (J/kg), `[α, β]`.
 fn tillotson(
