@@ -24,6 +24,8 @@ const BORVIK: &str = "Børvik et al. (2001, 2002), Eur. J. Mech. A 20, 685 and I
      37; their (1 + ε̇*)^C is taken as 1 + C ln ε̇*";
 const LESUER: &str = "Lesuer (2000), DOT/FAA/AR-00/25; not checked against the report";
 const TI_ELASTIC: &str = "E = 113.8 GPa, ν = .342 (MatWeb)";
+const TI_SHEAR: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439; 41.3 GPa elsewhere \
+     in the same file";
 const HANDBOOK_2017: &str = "aluminium 2017-T4: G 27.2 GPa, yield 275 MPa, solidus 786 K, as data \
      sheets have it";
 const LIKE_2024: &str = "of aluminium 2024, as an approximation: Steinberg-Guinan constants in \
@@ -166,6 +168,15 @@ records! {
             ("eos", LIKE_4340),
             ("", BORVIK),
         ];
+    "titanium-6al-4v", "titanium Ti-6Al-4V, constant yield stress":
+        von_mises(&TI_6AL_4V_STEINBERG, 1.33e9, heat(525.0, 300.0, Some(1878.0))),
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength.von_mises.shear_modulus", TI_SHEAR),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal.melting_temperature", LESUER),
+            ("", UINTAH),
+        ];
     "titanium-6al-4v-johnson-cook", "titanium Ti-6Al-4V":
         jc(&TI_6AL_4V, [1098e6, 1092e6, 0.93, 0.014, 1.1], heat(525.0, 300.0, Some(1878.0))),
         &[
@@ -177,6 +188,18 @@ records! {
             ("eos", STEINBERG_TABLE),
             ("density", STEINBERG),
             ("", LESUER),
+        ];
+    "titanium-6al-4v-steinberg-guinan", "titanium Ti-6Al-4V":
+        sg(
+            &TI_6AL_4V_STEINBERG,
+            [1.33e9, 2.12e9, 12.0, 0.1],
+            [1.15e-11, 6.44e-4, 2110.0, 1.0],
+            heat(525.0, 300.0, None),
+        ),
+        &[
+            ("strength.steinberg_guinan.shear_modulus", TI_SHEAR),
+            ("thermal.reference_temperature", ROOM),
+            ("", UINTAH),
         ];
 }
 
@@ -225,4 +248,10 @@ pub(super) const TI_6AL_4V: Metal = Metal {
     shear_modulus: 42.4e9,
     hugoniot: [5130.0, 1.028, 1.23, 0.0],
     curvature: [0.0; 2],
+};
+
+const TI_6AL_4V_STEINBERG: Metal = Metal {
+    shear_modulus: 41.9e9,
+    hugoniot: [5130.0, 1.028, 1.23, 0.17],
+    ..TI_6AL_4V
 };

@@ -8,10 +8,10 @@ use crate::{
     Effect, Eos, Failure, JohnsonHolmquist2, JohnsonHolmquist2Failure, Polynomial, Strength,
 };
 
-const CRONIN: &str = "Cronin et al. (2003), Implementation and validation of the Johnson-Holmquist \
-     ceramic material model in LS-DYNA, 4th European LS-DYNA Users Conf.";
-const LIMIT: &str = "Cronin et al. (2003), 4th European LS-DYNA Users Conf.: a strength of 13.0 GPa at the \
-     limit; other cards print 14.457 GPa (12.8); the moduli give 12.7 GPa at 5.9 GPa";
+const CRONIN: &str = "Cronin et al. (2003), 4th European LS-DYNA Users Conf.; the deck builder semgrit has the same; \
+     not checked against the paper";
+const LIMIT: &str = "Cronin et al. (2003), 4th European LS-DYNA Users Conf.: so the strength at the limit is 13.0 GPa; \
+     semgrit has 14.457 GPa (12.8), the moduli give 12.7 GPa; not checked against the paper";
 const ALUMINA: &str = "Anderson, Johnson & Holmquist (1995), 15th Int. Symp. Ballistics, 15, as public decks \
      quote it; the reference of Radioss (LAW79) has it rounded";
 const CARBIDE: &str = "Johnson & Holmquist (1999), J. Appl. Phys. 85, 8060, as the reference of Radioss \

@@ -7,8 +7,8 @@ use super::metal::{Metal, jc, sg, von_mises};
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const STEINBERG: &str =
     "Steinberg, UCRL-MA-106439, as FronTier's table of equations of state quotes it";
-const TANTALUM: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439; fits to \
-     other tantalum have β = 10, n = .1";
+const TANTALUM: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439; another \
+     table has β = 10, n = .1";
 const DIFFERENCE: &str = "γ₀ − b, as in the records of Steinberg that have it, to .06";
 const MEYERS: &str = "Meyers (1994), Dynamic Behavior of Materials, as a public table of Hugoniots quotes it: linear, \
      since the cubic of Steinberg (1996) loses pressure beyond some 170 GPa";
