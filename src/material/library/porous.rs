@@ -22,6 +22,7 @@ const JSC: &str =
     "JSC-1A of Luther et al. (2022), as miluphcuda quotes it in Regolith_simulant.cfg";
 const JSC_SHEAR: &str = "ν = .3, as in miluphcuda's Regolith_simulant.cfg, with ρ₀ c_e² of the whole for the bulk modulus; there the \
      12.32 GPa of the solid";
+const JSC_SPEED: &str = "about the least that the law takes with this crush curve; miluphcuda's Regolith_simulant.cfg has 950 m/s";
 const JSC_LIMIT: &str = "1.3 GPa, where the crush curve of miluphcuda's Regolith_simulant.cfg ends (its P_t, as α_t is one); JSC-1A of \
      Luther et al. (2022)";
 const BASALT: &str = "of basalt-tillotson, as in Luther et al. (2022)";
@@ -59,7 +60,7 @@ records! {
                 density,
                 eos: Eos::Tillotson(law),
                 strength: Strength::Lundborg(Lundborg {
-                    shear_modulus: 0.654e9,
+                    shear_modulus: 1.043e9,
                     cohesion: 1.4e3,
                     friction: 0.77,
                     max_strength: 1e9,
@@ -71,6 +72,7 @@ records! {
         &[
             ("porosity.p_alpha.exponent", QUADRATIC),
             ("porosity.p_alpha.solid_pressure", JSC_LIMIT),
+            ("porosity.p_alpha.sound_speed", JSC_SPEED),
             ("porosity.p_alpha.transition", PLAIN),
             ("strength.lundborg.shear_modulus", JSC_SHEAR),
             ("strength", JSC),
@@ -133,7 +135,7 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
                 Compaction::HolmquistJohnsonCookCompaction(law),
             )
         }
-        "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 950.0)),
+        "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 1200.0)),
         _ => return None,
     };
     Some(Porosity::new(distension, law, density, eos))
