@@ -10,10 +10,6 @@ const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants i
 const PLAIN: &str = "no hardening";
 pub(super) const UNCUT: &str = "none: a spall limit ends tension";
 const FLUID: &str = "without strength: its own is for the case to choose";
-const WATER: &str = "water of SWIFT, equation_of_state/planetary/tillotson.h; miluphcuda has others, of \
-     Woolfson (2007)";
-const CAVITATES: &str = "no tension: it cavitates";
-const NONE: &str = "none";
 const OKAMOTO: &str = "Okamoto et al. (2020), as miluphcuda quotes it in polycarbonate.till.cfg";
 
 records! {
@@ -65,26 +61,6 @@ records! {
             )
         },
         &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", OKAMOTO)];
-    "water-tillotson", "water to vapour":
-        {
-            let mut water = tillotson(
-                998.0,
-                [0.7, 0.15, 2.18e9, 13.25e9],
-                [7e6, 0.419e6, 2.69e6],
-                [0.0; 2],
-            );
-            if let Eos::Tillotson(law) = &mut water.eos {
-                law.alpha = 10.0;
-            }
-            water.failure = Failure::CAVITATES;
-            water
-        },
-        &[
-            ("strength", NONE),
-            ("failure", CAVITATES),
-            ("eos.tillotson.least_density", CAVITATES),
-            ("", WATER),
-        ];
 }
 
 /// Aluminium, with the strength of 6061-T6.
