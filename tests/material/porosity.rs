@@ -4,7 +4,7 @@ use crate::support::{material, step, tillotson};
 use material::{
     Compaction, CompactionDamage, Effect, Elastic, Eos, EpsilonAlpha, Failure, GradyKipp,
     HolmquistJohnsonCookCompaction, LANES, Material, PAlpha, PointBatch, Porosity, Rest, Strength,
-    StrengthOf, Value, VonMises,
+    StrengthOf, Value, VonMises, library,
 };
 use nalgebra::Matrix3;
 
@@ -277,6 +277,58 @@ fn precursor_of_the_published_foam() {
 }
 
 /// Constants of the whole act as without pores; those of the solid with 1/α of its stress, on the surface Y/α too.
+/// Density of the whole and its modulus, where pores begin to crush, and where none is left.
+#[test]
+fn porous_materials_of_the_library_are_as_stated() {
+    let table = [
+        ("aluminium-foam", 2700.0 / 1.275, 4110.0, [80e6, 700e6]),
+        ("regolith-jsc-1a", 2700.0 / 1.72, 1200.0, [100.0, 1.3e9]),
+    ];
+    for (name, density, sound_speed, pressures) in table {
+        let material = library::find(name).unwrap();
+        assert!((material.reference_density / density - 1.0).abs() < 1e-15);
+        let pores = material.porosity.as_ref().unwrap();
+        assert_eq!(pores.law.contradicts(pores.distension, &pores.solid), None);
+        let modulus = density * sound_speed * sound_speed;
+        assert!(
+            (material.bulk_modulus() / modulus - 1.0).abs() < 1e-12,
+            "{name}"
+        );
+        let solid = material.porosity.as_ref().unwrap().solid.density;
+        for (share, crushes) in [(0.99, false), (1.01, true)] {
+            let virgin = at(
+                &material,
+                &PointBatch::ZERO,
+                1.0 + share * pressures[0] / modulus,
+                0.0,
+            );
+            assert_eq!(virgin.compaction[0] > 0.0, crushes, "{name}");
+        }
+        // The solid has the pressure of the whole as soon as no pore is left.
+        let [mut low, mut high] = [1.0, 2.0 * solid / density];
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if at(&material, &PointBatch::ZERO, middle, 0.0).distension[0] > 1.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let crushed = at(&material, &PointBatch::ZERO, high, 0.0);
+        let found = crushed.pressure[0];
+        assert!((found / pressures[1] - 1.0).abs() < 1e-6, "{name}: {found}");
+        let exact = material.eos.at(solid, crushed.density[0], 0.0).pressure;
+        assert!(
+            (found / exact - 1.0).abs() < 1e-6,
+            "{name}: {found} {exact}"
+        );
+    }
+    let regolith = library::find("regolith-jsc-1a").unwrap();
+    let ratio = regolith.shear_modulus() / regolith.bulk_modulus();
+    let poisson = (3.0 - 2.0 * ratio) / (6.0 + 2.0 * ratio);
+    assert!((poisson - 0.3).abs() < 1e-3, "{poisson}");
+}
+
 #[test]
 fn strength_of_the_matrix_is_spread_over_the_whole() {
     let (g, y) = (27e9, 0.29e9);

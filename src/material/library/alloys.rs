@@ -1,4 +1,4 @@
-//! More alloys of shields, projectiles and armour, and lead.
+//! More alloys of shields, projectiles and armour, and iron.
 //!
 //! The line of a source says so if it has been read in another program's files only; "not checked"
 //! means that the paper itself has not been at hand.
@@ -24,6 +24,8 @@ const BORVIK: &str = "Børvik et al. (2001, 2002), Eur. J. Mech. A 20, 685 and I
      37; their (1 + ε̇*)^C is taken as 1 + C ln ε̇*";
 const LESUER: &str = "Lesuer (2000), DOT/FAA/AR-00/25; not checked against the report";
 const TI_ELASTIC: &str = "E = 113.8 GPa, ν = .342 (MatWeb)";
+const TI_SHEAR: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439; 41.3 GPa elsewhere \
+     in the same file";
 const HANDBOOK_2017: &str = "aluminium 2017-T4: G 27.2 GPa, yield 275 MPa, solidus 786 K, as data \
      sheets have it";
 const LIKE_2024: &str = "of aluminium 2024, as an approximation: Steinberg-Guinan constants in \
@@ -33,15 +35,33 @@ const LIKE_6061: &str = "of aluminium 6061, as an approximation: Steinberg-Guina
 const MELT_OF_6061: &str = "of aluminium 6061-T6, as an approximation";
 const LIKE_4340: &str = "of steel 4340 (Rockwell C 38), as an approximation: Steinberg, \
      UCRL-MA-106439 (1996), as a public table of Hugoniots quotes it";
+const IRON: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541, as WeldFormSPH quotes it; \
+     Uintah has m = 1.44";
+const MILD_STEEL: &str = "1006 steel of Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541; not checked \
+     against the paper";
+pub(super) const MARSH: &str = "Hugoniot of iron: Marsh (1980), LASL shock Hugoniot data";
+pub(super) const IRON_ELASTIC: &str = "assumed: E = 210 GPa, ν = .29, round values of iron";
 const ROOM: &str = "300 K, to which the other constants belong";
 const KEPT: &str = "no hardening: the initial yield stress is kept";
 const RATE: &str = "1/s, as in Johnson & Cook (1983)";
 const CONSTANT_GAMMA: &str = "no volume dependence of γρ assumed";
 const ALUMINIUM_MELTS: &str = "melting point of pure aluminium, assumed";
 const LIQUIDUS_7075: &str = "liquidus of 7075 (635 °C), assumed";
-const MEYERS: &str = "Meyers (1994), Dynamic Behavior of Materials, as a public table of Hugoniots quotes it: linear, \
-     since the cubic of Steinberg (1996) loses pressure beyond some 170 GPa";
-const LEAD_MELTS: &str = "melting point of lead";
+
+/// Sources of iron, from those of its strength and heat.
+macro_rules! iron {
+    ($law:expr) => {
+        &[
+            ("strength.johnson_cook.shear_modulus", IRON_ELASTIC),
+            ("strength.johnson_cook.reference_rate", RATE),
+            ("thermal.reference_temperature", ROOM),
+            ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
+            ("eos", MARSH),
+            ("density", MARSH),
+            ("", $law),
+        ]
+    };
+}
 
 records! {
     "aluminium-1100", "aluminium 1100-O, constant yield stress":
@@ -126,17 +146,12 @@ records! {
             heat(848.0, 300.0, None),
         ),
         &[("thermal.reference_temperature", ROOM), ("", STEINBERG)];
-    "lead", "lead, constant yield stress":
-        von_mises(&LEAD, 0.008e9, heat(124.0, 300.0, Some(601.0))),
-        &[
-            ("strength.von_mises.hardening_modulus", KEPT),
-            ("thermal.reference_temperature", ROOM),
-            ("thermal.melting_temperature", LEAD_MELTS),
-            ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
-            ("eos", MEYERS),
-            ("density", MEYERS),
-            ("", UINTAH),
-        ];
+    "iron-armco-johnson-cook", "Armco iron":
+        jc(&IRON_ALPHA, [175e6, 380e6, 0.32, 0.06, 0.55], heat(452.0, 300.0, Some(1811.0))),
+        iron!(IRON);
+    "steel-1006-johnson-cook", "mild steel 1006":
+        jc(&IRON_ALPHA, [350e6, 275e6, 0.36, 0.022, 1.0], heat(452.0, 300.0, Some(1811.0))),
+        iron!(MILD_STEEL);
     "steel-weldox-460e-johnson-cook", "steel Weldox 460 E":
         jc_of_rate(
             &WELDOX_460E,
@@ -153,6 +168,15 @@ records! {
             ("eos", LIKE_4340),
             ("", BORVIK),
         ];
+    "titanium-6al-4v", "titanium Ti-6Al-4V, constant yield stress":
+        von_mises(&TI_6AL_4V_STEINBERG, 1.33e9, heat(525.0, 300.0, Some(1878.0))),
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength.von_mises.shear_modulus", TI_SHEAR),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal.melting_temperature", LESUER),
+            ("", UINTAH),
+        ];
     "titanium-6al-4v-johnson-cook", "titanium Ti-6Al-4V":
         jc(&TI_6AL_4V, [1098e6, 1092e6, 0.93, 0.014, 1.1], heat(525.0, 300.0, Some(1878.0))),
         &[
@@ -164,6 +188,18 @@ records! {
             ("eos", STEINBERG_TABLE),
             ("density", STEINBERG),
             ("", LESUER),
+        ];
+    "titanium-6al-4v-steinberg-guinan", "titanium Ti-6Al-4V":
+        sg(
+            &TI_6AL_4V_STEINBERG,
+            [1.33e9, 2.12e9, 12.0, 0.1],
+            [1.15e-11, 6.44e-4, 2110.0, 1.0],
+            heat(525.0, 300.0, None),
+        ),
+        &[
+            ("strength.steinberg_guinan.shear_modulus", TI_SHEAR),
+            ("thermal.reference_temperature", ROOM),
+            ("", UINTAH),
         ];
 }
 
@@ -193,10 +229,10 @@ pub(super) const AL_7075: Metal = Metal {
     curvature: [0.0; 2],
 };
 
-const LEAD: Metal = Metal {
-    density: 11350.0,
-    shear_modulus: 8.6e9,
-    hugoniot: [2050.0, 1.46, 2.8, 0.0],
+pub(super) const IRON_ALPHA: Metal = Metal {
+    density: 7850.0,
+    shear_modulus: 81.4e9,
+    hugoniot: [3574.0, 1.92, 1.69, 0.0],
     curvature: [0.0; 2],
 };
 
@@ -212,4 +248,10 @@ pub(super) const TI_6AL_4V: Metal = Metal {
     shear_modulus: 42.4e9,
     hugoniot: [5130.0, 1.028, 1.23, 0.0],
     curvature: [0.0; 2],
+};
+
+const TI_6AL_4V_STEINBERG: Metal = Metal {
+    shear_modulus: 41.9e9,
+    hugoniot: [5130.0, 1.028, 1.23, 0.17],
+    ..TI_6AL_4V
 };

@@ -1,7 +1,7 @@
 //! Metals with the ductile failure of Johnson and Cook, each with the strength that its failure was
 //! fitted beside where that is known.
 
-use super::alloys::{AL_5083, AL_7075, TI_6AL_4V, WELDOX_460E};
+use super::alloys::{AL_5083, AL_7075, IRON_ALPHA, IRON_ELASTIC, MARSH, TI_6AL_4V, WELDOX_460E};
 use super::metal::{jc, jc_of_rate};
 use super::metals::{AL_2024, AL_6061, COPPER, STEEL_4340};
 use super::{Parts, heat};
@@ -14,7 +14,10 @@ const LIKE_6061: &str = "of aluminium 6061, as an approximation: Steinberg-Guina
      Uintah, citing Steinberg, UCRL-MA-106439";
 const LIKE_4340: &str = "of steel 4340 (Rockwell C 38), as an approximation: Steinberg, \
      UCRL-MA-106439 (1996), as a public table of Hugoniots quotes it";
-const MARSH: &str = "Hugoniot of iron: Marsh (1980), LASL shock Hugoniot data";
+const IRON: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541, as WeldFormSPH quotes it; \
+     Uintah has m = 1.44";
+const JOHNSON_COOK_IRON: &str = "Johnson & Cook (1985), Eng. Fract. Mech. 21, 31; not checked against the \
+     paper";
 const JOHNSON_COOK: &str = "Johnson & Cook (1983), Proc. 7th Int. Symp. Ballistics, 541, as other \
      programs quote it";
 const UINTAH_JC: &str = "Johnson-Cook constants in Uintah";
@@ -122,6 +125,18 @@ records! {
             "strength.johnson_cook.reference_rate": RATE,
             "thermal.reference_temperature": ROOM
         );
+    "iron-armco-ductile", "Armco iron, Johnson-Cook strength and failure":
+        failing(
+            jc(&IRON_ALPHA, [175e6, 380e6, 0.32, 0.06, 0.55], heat(452.0, 300.0, Some(1811.0))),
+            [-2.2, 5.43, -0.47, 0.016, 0.63],
+        ),
+        sources!(
+            JOHNSON_COOK_IRON, IRON_ELASTIC, MARSH, IRON,
+            "density": MARSH,
+            "strength.johnson_cook.reference_rate": RATE,
+            "thermal.reference_temperature": ROOM,
+            "eos.mie_gruneisen.b": CONSTANT_GAMMA
+        );
     "steel-4340-ductile", "steel 4340 (Rockwell C 30), Johnson-Cook strength and failure":
         failing(
             jc(&STEEL_4340, [792e6, 510e6, 0.26, 0.014, 1.03], heat(477.0, 300.0, Some(1793.0))),
@@ -217,6 +232,7 @@ mod tests {
             ("aluminium-2024-ductile", [0.3443, 0.2600, 0.2088, 0.1590]),
             ("aluminium-6061-ductile", [0.9259, 0.6800, 0.4697, 0.1363]),
             ("copper-ductile", [13.97, 5.430, 2.321, 0.7763]),
+            ("iron-armco-ductile", [4.151, 3.230, 2.443, 1.194]),
             ("steel-4340-ductile", [7.024, 3.490, 1.747, 0.4629]),
             ("steel-weldox-460e-ductile", [2.144, 1.8025, 1.517, 1.080]),
             ("titanium-6al-4v-ductile", [0.2053, 0.1600, 0.1216, 0.0616]),

@@ -10,6 +10,7 @@ const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants i
 const PLAIN: &str = "no hardening";
 pub(super) const UNCUT: &str = "none: a spall limit ends tension";
 const FLUID: &str = "without strength: its own is for the case to choose";
+const OKAMOTO: &str = "Okamoto et al. (2020), as miluphcuda quotes it in polycarbonate.till.cfg";
 
 records! {
     "aluminium-tillotson", "aluminium to vaporisation, strength of 6061-T6":
@@ -20,6 +21,16 @@ records! {
             ("eos.tillotson.least_density", UNCUT),
             ("", TILLOTSON),
         ];
+    "copper-tillotson", "copper to vaporisation, without strength":
+        {
+            tillotson(
+                8900.0,
+                [0.5, 1.5, 139e9, 110e9],
+                [32.5e6, 1.35e6, 3e6],
+                [0.0; 2],
+            )
+        },
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
     "granite-tillotson", "granite to vaporisation, without strength":
         {
             tillotson(
@@ -40,6 +51,16 @@ records! {
             )
         },
         &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
+    "polycarbonate-tillotson", "polycarbonate (Lexan) to vaporisation, without strength":
+        {
+            tillotson(
+                1194.0,
+                [0.5, 1.0, 9.2e9, 6.9e9],
+                [2e6, 0.28e6, 1.3e6],
+                [0.0; 2],
+            )
+        },
+        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", OKAMOTO)];
 }
 
 /// Aluminium, with the strength of 6061-T6.

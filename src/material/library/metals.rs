@@ -18,6 +18,8 @@ const ROOM: &str = "300 K, to which the other constants belong";
 const RATE: &str = "1/s, as in Johnson & Cook (1983)";
 const ASSUMED_7039: &str = "assumed: about that of aluminium 2024";
 const ASSUMED: &str = "assumed: a round value of austenitic steel, from no one source";
+const LIKE_ALLOY: &str =
+    "of tungsten with 3.5 % of nickel and 1.5 % of iron, whose γ₀ and b are the same";
 const MARSH: &str = "Hugoniot of iron: Marsh (1980), LASL shock Hugoniot data";
 const LIKE_2024: &str = "of aluminium 2024, as an approximation: Steinberg-Guinan constants in \
      Uintah, citing Steinberg, UCRL-MA-106439";
@@ -143,6 +145,19 @@ records! {
         von_mises(&TUNGSTEN, 2.2e9, heat(129.0, 300.0, None)),
         &[
             ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength", UINTAH),
+            ("thermal.reference_temperature", ROOM),
+            ("", STEINBERG),
+        ];
+    "tungsten-steinberg-guinan", "tungsten":
+        sg(
+            &TUNGSTEN,
+            [2.2e9, 4.0e9, 24.0, 0.19],
+            [9.38e-12, 1.38e-4, 4520.0, 1.3],
+            heat(129.0, 300.0, None),
+        ),
+        &[
+            ("strength.steinberg_guinan.a", LIKE_ALLOY),
             ("strength", UINTAH),
             ("thermal.reference_temperature", ROOM),
             ("", STEINBERG),

@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ceramics`, `ductile` and `rocks` fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `ductile` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -33,6 +33,7 @@ mod ceramics;
 mod ductile;
 mod explosives;
 mod fluids;
+mod heavy;
 mod impact;
 mod metal;
 mod metals;
@@ -59,6 +60,7 @@ fn records() -> Vec<&'static Record> {
         ductile::RECORDS,
         explosives::RECORDS,
         fluids::RECORDS,
+        heavy::RECORDS,
         impact::RECORDS,
         metals::RECORDS,
         paper::RECORDS,

@@ -16,6 +16,10 @@ const PMMA_SHEAR: &str = "ρ c_s² with 1401 m/s of Barker & Hollenbach (1970), 
      not checked against the paper";
 const PMMA_YIELD: &str =
     "Lucite of Steinberg, UCRL-MA-106439 (1996); not checked against the report";
+const POLYCARBONATE: &str = "Lexan of Steinberg, UCRL-MA-106439 (1996), as FronTier's table of equations of state and Uintah quote it";
+const POLYCARBONATE_HEAT: &str = "MatConstLexan.xml of Uintah; it softens at 418 K";
+const POLYCARBONATE_YIELD: &str = "IsoPlasticLexan.xml of Uintah";
+const POLYCARBONATE_SHEAR: &str = "assumed: E = 2.4 GPa, ν = .37, round values from no one source";
 
 records! {
     "nylon", "nylon 6/6, constant yield stress":
@@ -52,5 +56,23 @@ records! {
             ("thermal.reference_temperature", ROOM),
             ("eos.mie_gruneisen.b", CONSTANT_GAMMA),
             ("", PMMA),
+        ];
+    "polycarbonate", "polycarbonate (Lexan), constant yield stress":
+        {
+            let polycarbonate = Metal {
+                density: 1196.0,
+                shear_modulus: 0.876e9,
+                hugoniot: [1933.0, 3.49, 0.61, 0.0],
+                curvature: [-8.2, 9.6],
+            };
+            von_mises(&polycarbonate, 0.1e9, heat(1200.0, 300.0, Some(418.0)))
+        },
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("strength.von_mises.shear_modulus", POLYCARBONATE_SHEAR),
+            ("strength", POLYCARBONATE_YIELD),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal", POLYCARBONATE_HEAT),
+            ("", POLYCARBONATE),
         ];
 }

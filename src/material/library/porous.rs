@@ -2,9 +2,10 @@
 
 use super::Parts;
 use super::impact::{UNCUT, aluminium};
+use super::rocks::basalt;
 use crate::{
     Compaction, Effect, Eos, Failure, HolmquistJohnsonCook, HolmquistJohnsonCookCompaction,
-    HolmquistJohnsonCookFailure, PAlpha, Polynomial, Porosity, Strength,
+    HolmquistJohnsonCookFailure, Lundborg, PAlpha, Polynomial, Porosity, Strength,
 };
 
 const FOAM: &str = "Jutzi, Benz & Michel (2008), Icarus 198, 242, section 5.1, after Herrmann (1969); as the tests of \
@@ -13,10 +14,18 @@ const SOLID: &str = "of aluminium-tillotson";
 const FLUID: &str = "without strength, as in that test";
 const QUADRATIC: &str = "Herrmann (1969), J. Appl. Phys. 40, 2490";
 const PLAIN: &str = "no steep beginning";
-const CONCRETE: &str = "concrete of 48 MPa of Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591, as later papers quote \
-     it; not checked against the paper";
+const CONCRETE: &str = "concrete of 48 MPa of Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591, as the manual of CDEM \
+     (SetHJCMat) quotes it";
 const GRAIN: &str = "1.1 times the 2440 kg/m³ of the whole, by the locking strain of .1; Holmquist, Johnson & Cook (1993), 14th Int. \
-     Symp. Ballistics, 591, as later papers quote it";
+     Symp. Ballistics, 591, as public decks quote it";
+const JSC: &str =
+    "JSC-1A of Luther et al. (2022), as miluphcuda quotes it in Regolith_simulant.cfg";
+const JSC_SHEAR: &str = "ν = .3, as in miluphcuda's Regolith_simulant.cfg, with ρ₀ c_e² of the whole for the bulk modulus; there the \
+     12.32 GPa of the solid";
+const JSC_SPEED: &str = "about the least that the law takes with this crush curve; miluphcuda's Regolith_simulant.cfg has 950 m/s";
+const JSC_LIMIT: &str = "1.3 GPa, where the crush curve of miluphcuda's Regolith_simulant.cfg ends (its P_t, as α_t is one); JSC-1A of \
+     Luther et al. (2022)";
+const BASALT: &str = "of basalt-tillotson, as in Luther et al. (2022)";
 const COLD: &str = "none: the law has no heat";
 const RATE: &str = "1/s, as in Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591";
 const LAW: &str = "as the law has it";
@@ -43,6 +52,33 @@ records! {
             ("failure.effect", LAW),
             ("density", GRAIN),
             ("", CONCRETE),
+        ];
+    "regolith-jsc-1a", "lunar regolith simulant JSC-1A with 42 % of pores, P-alpha, friction, for impacts":
+        {
+            let (density, law) = basalt();
+            Parts {
+                density,
+                eos: Eos::Tillotson(law),
+                strength: Strength::Lundborg(Lundborg {
+                    shear_modulus: 1.043e9,
+                    cohesion: 1.4e3,
+                    friction: 0.77,
+                    max_strength: 1e9,
+                }),
+                thermal: None,
+                failure: Failure::NONE,
+            }
+        },
+        &[
+            ("porosity.p_alpha.exponent", QUADRATIC),
+            ("porosity.p_alpha.solid_pressure", JSC_LIMIT),
+            ("porosity.p_alpha.sound_speed", JSC_SPEED),
+            ("porosity.p_alpha.transition", PLAIN),
+            ("strength.lundborg.shear_modulus", JSC_SHEAR),
+            ("strength", JSC),
+            ("porosity", JSC),
+            ("eos.tillotson.least_density", UNCUT),
+            ("", BASALT),
         ];
 }
 
@@ -87,18 +123,7 @@ const CONCRETE_DISTENSION: f64 = 1.1;
 /// Pores of the record of a name, in a solid of this density (kg/m³).
 pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
     let (distension, law) = match name {
-        "aluminium-foam" => {
-            let law = PAlpha {
-                elastic_pressure: 80e6,
-                solid_pressure: 700e6,
-                exponent: 2.0,
-                transition_pressure: 0.0,
-                transition_distension: 1.0,
-                transition_exponent: 2.0,
-                sound_speed: 4110.0,
-            };
-            (1.275, Compaction::PAlpha(law))
-        }
+        "aluminium-foam" => (1.275, p_alpha([80e6, 700e6], 4110.0)),
         "concrete-48" => {
             let law = HolmquistJohnsonCookCompaction {
                 crush_pressure: 16e6,
@@ -110,7 +135,21 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
                 Compaction::HolmquistJohnsonCookCompaction(law),
             )
         }
+        "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 1200.0)),
         _ => return None,
     };
     Some(Porosity::new(distension, law, density, eos))
+}
+
+/// Quadratic, of `[P_e, P_s]` (Pa) and the bulk sound speed of virgin matter (m/s).
+fn p_alpha([elastic_pressure, solid_pressure]: [f64; 2], sound_speed: f64) -> Compaction {
+    Compaction::PAlpha(PAlpha {
+        elastic_pressure,
+        solid_pressure,
+        exponent: 2.0,
+        transition_pressure: 0.0,
+        transition_distension: 1.0,
+        transition_exponent: 2.0,
+        sound_speed,
+    })
 }

@@ -53,14 +53,14 @@ const FADES: &str = "as the laws have it";
 records! {
     "basalt-tillotson", "basalt of the laboratory, to vaporisation: friction, flaws, and shear damage":
         rock(
-            tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
+            basalt(),
             Strength::Collins(collins([22.7e9, 90e6, 2.0, 3.5e9], [0.0, 0.8])),
             Failure {
                 collins: Some(CollinsFailure {
                     brittle_ductile: 2.7e9,
                     brittle_plastic: 4.1e9,
                 }),
-                grady_kipp: Some(flaws(4e35, 9.0, 1e-3)),
+                grady_kipp: Some(flaws(4e35, 9.0, 1.2e-3)),
                 ..Failure::NONE
             },
         ),
@@ -81,7 +81,7 @@ records! {
         ];
     "basalt-field", "basalt of the ground, weak by joints: friction and shear damage, for craters of metres and more":
         rock(
-            tillotson(2700.0, [0.5, 1.5, 26.7e9, 26.7e9], [487e6, 4.72e6, 18.2e6], [5.0, 5.0]),
+            basalt(),
             Strength::Collins(collins([22.7e9, 10e6, 1.2, 3.5e9], [10e3, 0.6])),
             Failure {
                 ivanov: Some(SHEAR),
@@ -199,6 +199,16 @@ const SHEAR: Ivanov = Ivanov {
     slope: 1e-11,
     pressure: 300e6,
 };
+
+/// Basalt without pores.
+pub(super) fn basalt() -> (f64, Tillotson) {
+    tillotson(
+        2700.0,
+        [0.5, 1.5, 26.7e9, 26.7e9],
+        [487e6, 4.72e6, 18.2e6],
+        [5.0, 5.0],
+    )
+}
 
 /// Density (kg/m³), `[a, b, A (Pa), B (Pa)]`, `[E₀, e_iv, e_cv]` (J/kg), `[α, β]`.
 fn tillotson(
