@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::faces::Faces;
 use super::formulation::{
     Conventional, Corrected, Formulation, Normalised, StressPoints, TotalBodies,
 };
@@ -33,6 +34,7 @@ pub struct Sph {
     sums: Sums,
     /// Plastic strains of images, where materials ask for those of neighbours.
     strains: Vec<f64>,
+    faces: Faces,
 }
 
 enum Form {
@@ -96,6 +98,7 @@ impl Sph {
             },
             sums: Sums::new(case, &Kernel::new(case.dimension)),
             strains: Vec::new(),
+            faces: Faces::new(case, groups),
         }
     }
 
@@ -218,6 +221,22 @@ impl Sph {
         let sums = &mut self.sums;
         with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
         sums.terms.prepare(particles, step.dt);
+        if self.faces.is_any() {
+            self.faces.correct(&self.sums, particles, lists);
+        }
+    }
+
+    /// Finds the free faces that pressures act on, after the second sweep.
+    pub fn faces(&mut self, particles: &mut ParticleStore, lists: &Lists) {
+        if self.faces.is_any() {
+            self.faces.find(&self.sums, particles, lists);
+        }
+    }
+
+    /// True if pressures act, on what rests as well.
+    #[must_use]
+    pub fn presses(&self) -> bool {
+        self.faces.is_any()
     }
 
     /// Data of halo particles beside fields that the second sweep needs, if any.
@@ -296,6 +315,9 @@ impl Sph {
     #[must_use]
     pub fn memory(&self) -> usize {
         let strains = size_of::<f64>() * self.strains.capacity();
-        self.sums.memory() + strains + with_form!(&self.form, form => form.memory())
+        self.sums.memory()
+            + self.faces.memory()
+            + strains
+            + with_form!(&self.form, form => form.memory())
     }
 }

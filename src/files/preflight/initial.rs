@@ -179,7 +179,10 @@ impl Ranges {
             range.include(*v);
         }
         let energy = initial.specific_energy;
-        let state = material.virgin(initial.density, energy);
+        let state = match body.initial.loading {
+            None => material.virgin(initial.density, energy),
+            Some(_) => material.loaded(initial.density, energy),
+        };
         self.temperature.include(initial.temperature.unwrap_or(0.0));
         self.energy.include(energy);
         // Failed material bears no tension.
