@@ -68,7 +68,7 @@ fn key(params: &BodyParams) -> Result<Option<(&'static str, Range<usize>)>, Diag
     let mut given = all.into_iter().flatten();
     let first = given.next();
     if let (Some((one, _)), Some((other, span))) = (&first, given.next()) {
-        let title = format!("a body begins under a `{one}` or a `{other}`, not both");
+        let title = format!("a body has a `{one}` or a `{other}`, not both");
         return Err(Diagnostic::new(span, title));
     }
     Ok(first)
