@@ -17,8 +17,10 @@ use sums::with_scale;
 /// Free faces of the bodies that a pressure acts on.
 #[derive(Default)]
 pub struct Faces {
-    /// By group: whether a pressure acts on a body of it.
+    /// By group: whether a pressure acts on a body of it; empty if none acts at all.
     pressed: Vec<bool>,
+    /// By body: the same of its group.
+    of_body: Vec<bool>,
     /// Matrices `G` of the images.
     corrections: Vec<[f64; 6]>,
 }
@@ -29,13 +31,13 @@ impl Faces {
     pub fn new(case: &Case, groups: &Groups) -> Self {
         let loads = &case.loads.pressures;
         let is_pressed = |body: usize| loads.iter().any(|load| load.body == body);
+        if loads.is_empty() {
+            return Self::default();
+        }
         let of_group = |group: usize| groups.members(group).any(is_pressed);
         Self {
-            pressed: if loads.is_empty() {
-                Vec::new()
-            } else {
-                (0..groups.count()).map(of_group).collect()
-            },
+            pressed: (0..groups.count()).map(of_group).collect(),
+            of_body: (groups.of_body.iter().map(|&group| of_group(group))).collect(),
             corrections: Vec::new(),
         }
     }
@@ -46,10 +48,19 @@ impl Faces {
         !self.pressed.is_empty()
     }
 
+    /// True if a body needs its neighbours for its faces, even if it rests.
+    #[inline]
+    #[must_use]
+    pub fn has(&self, body: u32) -> bool {
+        self.of_body.get(body as usize).is_some_and(|&has| has)
+    }
+
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.pressed.capacity() + size_of::<[f64; 6]>() * self.corrections.capacity()
+        self.pressed.capacity()
+            + self.of_body.capacity()
+            + size_of::<[f64; 6]>() * self.corrections.capacity()
     }
 
     /// Finds the matrices of owned particles, before halo particles get them.

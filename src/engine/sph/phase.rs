@@ -111,7 +111,11 @@ impl Sph {
             SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
-        term_records::bytes_of_records(&case.sph.terms) + corrected
+        let faces = match case.loads.pressures[..] {
+            [] => 0,
+            [..] => size_of::<[f64; 6]>(),
+        };
+        term_records::bytes_of_records(&case.sph.terms) + corrected + faces
     }
 
     /// Bodies of the total form, if the case has any.
@@ -199,10 +203,10 @@ impl Sph {
         with_form!(&mut self.form, form => form.scratch(images))
     }
 
-    /// The same, and what of the case can rest.
-    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting) {
+    /// The same, what of the case can rest, and what has faces.
+    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting, &Faces) {
         let scratch = with_form!(&mut self.form, form => form.scratch(images));
-        (scratch, &self.sums.resting)
+        (scratch, &self.sums.resting, &self.faces)
     }
 
     /// The first sweep: velocity gradient at the end of the step, density and stress from its mean
@@ -231,12 +235,6 @@ impl Sph {
         if self.faces.is_any() {
             self.faces.find(&self.sums, particles, lists);
         }
-    }
-
-    /// True if pressures act, on what rests as well.
-    #[must_use]
-    pub fn presses(&self) -> bool {
-        self.faces.is_any()
     }
 
     /// Data of halo particles beside fields that the second sweep needs, if any.
