@@ -381,7 +381,7 @@ fn a_gentle_start_on_any_ranks_and_through_restarts() {
         "body.plate.overburden={ lateral = 0.8 }",
         "body.plate.lattice=glass",
         "body.sphere.pressure=0.2 GPa * exp(-(r / 0.2 mm)^2)",
-        "pressure=[{ body = \"plate\", below = { z = \"-0.1 mm\" }, times = [0, \"0.1 us\"], value = [\"1 GPa\", 0] }]",
+        "pressure=[{ body = \"plate\", below = { z = 0 }, times = [0, \"0.1 us\"], value = [\"1 GPa\", 0] }]",
         "relaxation={ until = \"0.05 us\", waiting = [\"sphere\"] }",
         "run.end_time=0.1us",
     ] {
