@@ -145,13 +145,7 @@ impl Material {
                 crushed: 0.0,
             };
         };
-        let batch = PointBatch {
-            density: [density; LANES],
-            specific_energy: [energy; LANES],
-            ..PointBatch::ZERO
-        };
-        let [point, ..] = self.eos.porous(porosity, &batch, crushes);
-        point
+        self.eos.first(porosity, [density, energy], crushes)
     }
 
     /// The distension of a particle that holds `distension`, which is zero before its first update; one
