@@ -13,6 +13,7 @@ pub mod library;
 mod point;
 mod porosity;
 mod rest;
+mod stressed;
 pub mod thermal;
 
 pub use constants::Constant;
@@ -27,6 +28,7 @@ pub use porosity::{
     PAlpha, Porosity, PorousPoint, Solid, StrengthOf,
 };
 pub use rest::{NEGLIGIBLE, Rest};
+pub use stressed::{Stressed, Unborne, pressure_and_deviator};
 pub use thermal::{Thermal, ThermalConstants};
 
 use numerics::dispatch::{Vectorised, instructions};
@@ -118,32 +120,32 @@ impl Material {
     /// pores crush.
     #[must_use]
     pub fn virgin(&self, density: f64, specific_energy: f64) -> PointResponse {
-        self.porous(density, specific_energy, false).0
+        self.first(density, specific_energy, false).response
     }
 
     /// Pressure and derivatives of matter that has been compressed to a density (kg/m³) and specific energy
     /// (J/kg) for the first time.
     #[must_use]
     pub fn loaded(&self, density: f64, specific_energy: f64) -> PointResponse {
-        self.porous(density, specific_energy, true).0
+        self.first(density, specific_energy, true).response
     }
 
-    /// Response and distension of matter that was virgin; pores crush if `crushes`.
-    fn porous(&self, density: f64, energy: f64, crushes: bool) -> (PointResponse, f64) {
+    /// Matter that was virgin; pores crush if `crushes`.
+    fn first(&self, density: f64, energy: f64, crushes: bool) -> PorousPoint {
         let Some(porosity) = &self.porosity else {
             let mut response = self.eos.at(self.reference_density, density, energy);
             if let Eos::Jwl(explosive) = &self.eos {
                 response.pressure = explosive.unburnt(self.reference_density, density);
             }
-            return (response, 1.0);
+            return PorousPoint {
+                response,
+                distension: 1.0,
+                compaction: 1.0,
+                share: 1.0,
+                crushed: 0.0,
+            };
         };
-        let batch = PointBatch {
-            density: [density; LANES],
-            specific_energy: [energy; LANES],
-            ..PointBatch::ZERO
-        };
-        let [point, ..] = self.eos.porous(porosity, &batch, crushes);
-        (point.response, point.distension)
+        self.eos.first(porosity, [density, energy], crushes)
     }
 
     /// The distension of a particle that holds `distension`, which is zero before its first update; one
@@ -358,13 +360,24 @@ impl Material {
     /// the material has thermal constants: [`Self::temperature`] of it is that temperature.
     #[must_use]
     pub fn energy(&self, density: f64, temperature: f64) -> Option<f64> {
+        self.energy_at(density, temperature, false)
+    }
+
+    /// The same of matter that has been compressed to its density for the first time.
+    #[must_use]
+    pub fn loaded_energy(&self, density: f64, temperature: f64) -> Option<f64> {
+        self.energy_at(density, temperature, true)
+    }
+
+    /// The same; pores crush if `crushes`.
+    fn energy_at(&self, density: f64, temperature: f64, crushes: bool) -> Option<f64> {
         let thermal = self.thermal.as_ref()?;
         let specific_heat = thermal.constants().specific_heat;
         let matter = density * self.distension(0.0);
         let mut energy = thermal.cold_energy(matter) + specific_heat * temperature;
         // What a cut-off tears is denser than its mean, and its cold energy another; and pores give way to heat.
         for _ in 0..TORN_STEPS {
-            let (_, distension) = self.porous(density, energy, false);
+            let PorousPoint { distension, .. } = self.first(density, energy, crushes);
             let missed = temperature - self.temperature(density, energy, [0.0, distension])?;
             if missed.abs() <= TORN_ERROR * temperature {
                 break;

@@ -2,6 +2,7 @@
 
 use super::readable::shown;
 use super::{Body, Case, Heat, Place, Profile, Quantity, Vec3};
+use material::{Material, Stressed, Unborne};
 
 /// No speed is as large (m/s).
 const LIGHT: f64 = 299_792_458.0;
@@ -25,6 +26,12 @@ pub struct Beginning {
     pub specific_energy: f64,
     /// Equivalent plastic strain.
     pub plastic_strain: f64,
+    /// Deviatoric stress `xx yy zz xy xz yz`, tension positive (Pa).
+    pub deviatoric_stress: [f64; 6],
+    /// How far pores have been crushed, along the crush curve; zero without pores.
+    pub compaction: f64,
+    /// The key of a stress that it does not bear, and why.
+    pub unborne: Option<(&'static str, Unborne)>,
 }
 
 impl Beginning {
@@ -46,7 +53,22 @@ impl Beginning {
             let value = shown(self.plastic_strain, "");
             Some(("plastic_strain", value, "zero or positive and below 1000"))
         } else {
-            None
+            let (key, unborne) = self.unborne?;
+            let (value, range) = match unborne {
+                Unborne::Pressure(pressure) => (
+                    shown(pressure, "Pa"),
+                    "one that the equation of state has at the body's energy or temperature",
+                ),
+                Unborne::Tension(pressure) => (
+                    shown(pressure, "Pa"),
+                    "no more tension than the material bears",
+                ),
+                Unborne::Shear(stress) => (
+                    format!("one of {} in shear (von Mises)", shown(stress, "Pa")),
+                    "within the strength of the material",
+                ),
+            };
+            Some((key, value, range))
         }
     }
 }
@@ -75,11 +97,8 @@ impl Case {
             }
             _ if body.holds(Quantity::SpecificEnergy) => body.initial.largest_energy,
             _ => {
-                self.heat(
-                    body,
-                    &Place::new(&body.shape.centre(), &body.shape.centre()),
-                )
-                .1
+                let centre = Place::new(&body.shape.centre(), &body.shape.centre());
+                self.energy_at(body, &centre, self.initial_density(body))
             }
         }
     }
@@ -102,14 +121,54 @@ impl Case {
     #[must_use]
     pub fn beginning(&self, body: &Body, position: &Vec3) -> Beginning {
         let place = Place::new(position, &body.shape.centre());
-        let (temperature, specific_energy) = self.heat(body, &place);
-        Beginning {
+        let density = self.initial_density(body);
+        let mut begins = Beginning {
             velocity: body.velocity_at(position),
-            density: self.initial_density(body),
-            temperature,
-            specific_energy,
+            density,
+            temperature: match &body.initial.heat {
+                Heat::Temperature(temperature) => Some(temperature.at(&place)),
+                Heat::Reference | Heat::Energy(_) => None,
+            },
+            specific_energy: self.energy_at(body, &place, density),
             plastic_strain: body.initial.plastic_strain.at(&place),
+            deviatoric_stress: [0.0; 6],
+            compaction: 0.0,
+            unborne: None,
+        };
+        if let Some(found) = self.stressed(body, position, begins.plastic_strain) {
+            match found {
+                Ok(state) => {
+                    begins.density = state.density;
+                    begins.specific_energy = state.specific_energy;
+                    begins.deviatoric_stress = state.deviatoric_stress;
+                    begins.compaction = state.compaction;
+                }
+                Err(unborne) => begins.unborne = Some(unborne),
+            }
         }
+        begins
+    }
+
+    /// The state of a body at `position` (m) under the stress that it begins under, if there is any, with a plastic strain; or
+    /// the key of that and why it does not bear it.
+    #[must_use]
+    pub fn stressed(
+        &self,
+        body: &Body,
+        position: &Vec3,
+        plastic_strain: f64,
+    ) -> Option<Result<Stressed, (&'static str, Unborne)>> {
+        let loading = body.initial.loading.as_ref()?;
+        if let Some(even) = body.initial.even {
+            return Some(Ok(even));
+        }
+        let place = Place::new(position, &body.shape.centre());
+        let material = &self.materials[body.material];
+        let mass = material.reference_density * body.lattice.particle_volume(self.dimension);
+        let stress = loading.at(position, &place);
+        let energy = |density: f64| self.loaded_energy_at(body, &place, density);
+        let found = material.stressed(&stress, energy, [mass, plastic_strain]);
+        Some(found.map_err(|unborne| (loading.key(), unborne)))
     }
 
     /// The initial state of the particle of a site of a body: values of a file take precedence over
@@ -150,17 +209,31 @@ impl Case {
         ))
     }
 
-    /// Temperature (K), if it is given, and specific energy (J/kg) at a place.
-    fn heat(&self, body: &Body, place: &Place) -> (Option<f64>, f64) {
+    /// Specific energy (J/kg) of a body at a place and a density (kg/m³), of virgin matter.
+    fn energy_at(&self, body: &Body, place: &Place, density: f64) -> f64 {
+        self.energy_by(body, place, density, Material::energy)
+    }
+
+    /// The same of matter that has been compressed to that density for the first time.
+    #[must_use]
+    pub fn loaded_energy_at(&self, body: &Body, place: &Place, density: f64) -> f64 {
+        self.energy_by(body, place, density, Material::loaded_energy)
+    }
+
+    fn energy_by(
+        &self,
+        body: &Body,
+        place: &Place,
+        density: f64,
+        of_temperature: fn(&Material, f64, f64) -> Option<f64>,
+    ) -> f64 {
         let material = &self.materials[body.material];
-        let density = self.initial_density(body);
         match &body.initial.heat {
-            Heat::Reference => (None, material.eos.reference_energy(density)),
-            Heat::Energy(energy) => (None, energy.at(place)),
+            Heat::Reference => material.eos.reference_energy(density),
+            Heat::Energy(energy) => energy.at(place),
             Heat::Temperature(temperature) => {
-                let temperature = temperature.at(place);
-                let energy = material.energy(density, temperature);
-                (Some(temperature), energy.unwrap_or(f64::NAN))
+                let energy = of_temperature(material, density, temperature.at(place));
+                energy.unwrap_or(f64::NAN)
             }
         }
     }

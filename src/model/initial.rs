@@ -1,6 +1,7 @@
 //! The initial state of the particles of a body, as in a case.
 
-use super::Profile;
+use super::{Loading, Profile};
+use material::Stressed;
 
 /// The source of the specific energy of particles.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,6 +30,10 @@ pub struct Initial {
     pub largest_energy: f64,
     /// Equivalent plastic strain.
     pub plastic_strain: Profile,
+    /// The stress that it begins under, if there is any; the density is that of its pressure.
+    pub loading: Option<Loading>,
+    /// The state under it, where that is the same everywhere and has been found.
+    pub even: Option<Stressed>,
 }
 
 impl Initial {
@@ -41,6 +46,17 @@ impl Initial {
         };
         let profiles = self.velocity.iter().flatten().chain(heat);
         let mut profiles = profiles.chain([&self.plastic_strain]);
-        profiles.any(|profile| profile.constant().is_none())
+        profiles.any(|profile| profile.constant().is_none()) || self.varies_in_stress()
+    }
+
+    /// `true` if the stress that it begins under, or what comes with that, varies within the body.
+    #[must_use]
+    pub fn varies_in_stress(&self) -> bool {
+        let of_heat = match &self.heat {
+            Heat::Reference => false,
+            Heat::Energy(profile) | Heat::Temperature(profile) => profile.constant().is_none(),
+        };
+        let loading = self.loading.as_ref();
+        loading.is_some_and(|loading| of_heat || loading.varies())
     }
 }

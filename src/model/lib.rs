@@ -20,6 +20,7 @@ mod gauge;
 mod grading;
 mod initial;
 mod load;
+mod loading;
 mod measure;
 mod motion;
 mod numerical_limits;
@@ -49,7 +50,8 @@ pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
-pub use load::{Detonator, Loads, VelocityLoad};
+pub use load::{Detonator, Loads, PressureLoad, Relaxation, VelocityLoad};
+pub use loading::{Column, ColumnOf, Loading};
 pub use measure::{
     Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,
 };
@@ -127,16 +129,19 @@ impl Case {
     }
 
     /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid
-    /// bodies, absorbing zones, rigid surfaces.
+    /// bodies, absorbing zones, relaxation, pressures, rigid surfaces.
     pub fn load_names(&self) -> impl Iterator<Item = &str> {
         let loads = self.loads.velocities.iter().map(|load| &load.name);
         let rigid = self.bodies.iter().filter(|body| body.rigid.is_some());
         let absorbers = self.loads.absorbers.iter().map(|absorber| &absorber.name);
+        let relaxation = self.loads.relaxation.iter().map(|_| Relaxation::NAME);
+        let pressures = self.loads.pressures.iter().map(|pressure| &pressure.name);
         let surfaces = self.loads.surfaces.iter().map(|surface| &surface.name);
         (loads.chain(rigid.map(|body| &body.name)))
             .chain(absorbers)
-            .chain(surfaces)
             .map(String::as_str)
+            .chain(relaxation)
+            .chain(pressures.chain(surfaces).map(String::as_str))
     }
 
     /// Density of a body at rest (kg/m³): its own, or that of its material.

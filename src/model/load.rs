@@ -16,6 +16,37 @@ pub struct Loads {
     pub surfaces: Vec<RigidSurface>,
     /// Points from which detonations run.
     pub detonators: Vec<Detonator>,
+    /// Pressures on faces of bodies; where several act, they add up.
+    pub pressures: Vec<PressureLoad>,
+    /// What brings bodies to rest at first.
+    pub relaxation: Option<Relaxation>,
+}
+
+/// A pressure on the free faces of the particles of a body that are in a region at time zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PressureLoad {
+    /// Name in reports.
+    pub name: String,
+    /// Index into [`super::Case::bodies`].
+    pub body: usize,
+    /// The region of these particles.
+    pub region: Region,
+    /// The pressure (Pa), as a motion along the first axis.
+    pub pressure: Motion,
+}
+
+/// A drag by which bodies come to rest before something happens to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relaxation {
+    /// When it ends (s), at the end of a step.
+    pub until: f64,
+    /// Rate of the drag of each body (1/s), zero without.
+    pub rates: Vec<f64>,
+}
+
+impl Relaxation {
+    /// Its name in reports.
+    pub const NAME: &'static str = "relaxation";
 }
 
 /// A point from which a detonation runs through explosives, straight and at their own speeds.
@@ -60,6 +91,21 @@ pub struct VelocityLoad {
     /// The particles are free from the step boundary nearest to this time on (s); may be
     /// infinite.
     pub until: f64,
+    /// True if the last velocity that it prescribes is that of a start: it holds in the step in which it ends.
+    pub starts: bool,
+}
+
+impl VelocityLoad {
+    /// True if it holds in a step between two times (s).
+    #[must_use]
+    pub fn holds(&self, from: f64, to: f64) -> bool {
+        let time = if self.starts {
+            from
+        } else {
+            from + 0.5 * (to - from)
+        };
+        time < self.until
+    }
 }
 
 impl Case {

@@ -100,6 +100,12 @@ impl NumericalLimits {
         let hot = largest(&mut deforming.map(|b| (2.0 * case.initial_energy(b).abs()).sqrt()));
         let g = case.loads.gravity;
         let gravity = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-        driven + moving + sound + hot + gravity * case.run.end_time
+        // As much as a pressure gives a single layer.
+        let pressed = largest(&mut case.loads.pressures.iter().map(|load| {
+            let body = &case.bodies[load.body];
+            let layer = case.initial_density(body) * body.lattice.spacing;
+            load.pressure.largest_speed() / layer * case.run.end_time
+        }));
+        driven + moving + sound + hot + pressed + gravity * case.run.end_time
     }
 }

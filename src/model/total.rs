@@ -54,6 +54,14 @@ impl Case {
                 own.holds(Quantity::Density),
                 "its file gives each particle a density",
             ),
+            (
+                self.loads.pressures.iter().any(|load| load.body == body),
+                "a pressure acts on its faces",
+            ),
+            (
+                own.initial.varies_in_stress(),
+                "the stress that it begins under gives each particle a density",
+            ),
         ];
         let first = obstacles.into_iter().find(|(is_there, _)| *is_there);
         first.map(|(_, why)| why.to_owned())

@@ -194,6 +194,12 @@ particle_fields! {
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
     absorption: Scalar,                   "1/s",    State,    -,              OnDemand, ABSORBERS;
+    /// Which pressures act on its faces: a set of bits, in the input's order.
+    pressed: Index,                       "",       State,    -,              OnDemand, PRESSURES;
+    /// Acceleration by a unit of pressure on its free faces: it points into the body, and is next to nothing inside.
+    face: Vector,                         "m^2/kg", State,    -,              OnDemand, PRESSURES;
+    /// Matrix by which the stress of a pressure of one would act on its neighbours.
+    face_correction: Symmetric,           "",       Scratch,  STRESS,         Never,    PRESSURES;
     /// True if it left the range of its state and stands still, outside of all sums (1).
     frozen: Index,                        "",       State,    -,              OnDemand, FREEZE;
     /// Mass of the material whose stress a stress point carries; zero for velocity particles.

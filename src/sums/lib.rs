@@ -6,6 +6,7 @@
 //! outside the support adds an exact zero.
 
 pub mod corrected;
+pub mod face;
 pub mod force_sweep;
 pub mod from_mirrors;
 pub mod gradient;

@@ -90,6 +90,7 @@ fn a_body_accelerated_by_a_load_is_seen() {
             region: Region::OPEN,
             motion: table(-SPEED),
             until: 4e-6,
+            starts: false,
         });
         assert!(
             meets(start(case), 2e-4, bodies_are_near),

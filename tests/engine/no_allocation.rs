@@ -87,6 +87,14 @@ body = "below"
 above.x = "1.8 mm"
 velocity = { x = 0, y = 0 }
 
+[relaxation]
+until = "0.5 ms"
+
+[[pressure]]
+body = "above"
+above.z = "0.4 mm"
+value = "1 Pa"
+
 [[absorb]]
 body = "below"
 faces = ["+y"]
@@ -142,7 +150,8 @@ fn check(comm: &Comm, set: &[String]) {
     let held_before = HELD.load(Ordering::Relaxed);
     let case = input::parse("case", CASE, set).unwrap_or_else(|e| panic!("{e}"));
     let mut simulation = Simulation::start(case, comm).expect("it starts");
-    for _ in 0..20 {
+    // With the first search for folds of a body that a pressure acts on.
+    for _ in 0..40 {
         simulation.advance(comm).expect("a step");
     }
     let before = COUNT.load(Ordering::Relaxed);

@@ -161,6 +161,7 @@ fn overridden(key: &Key, value: &str) -> String {
         .replace("symmetry.", "symmetry.0.")
         .replace("load.", "load.0.")
         .replace("absorb.", "absorb.0.")
+        .replace("pressure.", "pressure.0.")
         .replace("detonate.", "detonate.0.")
         .replace("plane.", "plane.0.")
         .replace("surface.", "surface.0.")

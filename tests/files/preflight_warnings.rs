@@ -357,6 +357,26 @@ fn values_that_no_run_has_a_use_for_are_told() {
 }
 
 #[test]
+fn gentle_starts_that_are_none_are_told() {
+    for (sound, doubtful, said) in [
+        (
+            "body.plate.pressure=1 GPa",
+            "body.plate.pressure=300 GPa",
+            "the `pressure` that `plate` begins under brings its material to 1.",
+        ),
+        (
+            "relaxation.until=10 us",
+            "relaxation.until=2 us",
+            "the relaxation leaves ",
+        ),
+    ] {
+        assert_told(&[sound], &[]);
+        let told = told(&[doubtful]);
+        assert!(told.len() == 1 && told[0].starts_with(said), "{told:#?}");
+    }
+}
+
+#[test]
 fn contact_of_very_different_spacings_is_told() {
     let fine = told(&["body.plate.spacing=\"0.005 mm\""]);
     assert!(

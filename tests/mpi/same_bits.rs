@@ -370,6 +370,38 @@ fn a_charge_burns_alike_on_any_ranks_and_through_restarts() {
     assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
 }
 
+/// A plate under its weight and a pressure on its rear, which relaxes before the sphere starts, and a sphere under pressure:
+/// the same on any ranks, and through restarts while it relaxes and after.
+#[test]
+fn a_gentle_start_on_any_ranks_and_through_restarts() {
+    let (_keep, at) = folder();
+    let mut case = QUARTER.to_vec();
+    for set in [
+        "gravity=[0, 0, \"-1e9 m/s^2\"]",
+        "body.plate.overburden={ lateral = 0.8 }",
+        "body.plate.lattice=glass",
+        "body.sphere.pressure=0.2 GPa * exp(-(r / 0.2 mm)^2)",
+        "pressure=[{ body = \"plate\", below = { z = 0 }, times = [0, \"0.1 us\"], value = [\"1 GPa\", 0] }]",
+        "relaxation={ until = \"0.05 us\", waiting = [\"sphere\"] }",
+        "run.end_time=0.1us",
+    ] {
+        case.extend(["--set", set]);
+    }
+    let one = at("one");
+    run(1, 2, &case, &[], &one);
+    let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
+    for name in ["relaxation", "pressure-1", "sphere waits"] {
+        assert!(loads.contains(&format!(",{name},")), "{name}: {loads}");
+    }
+    for ranks in [2, 5] {
+        let other = at(&format!("{ranks}"));
+        run(ranks, 1, &case, &[], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks"));
+    }
+    let stops = ["0.02us", "0.07us"];
+    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+}
+
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
 /// plate pass; measures of a plate, its debris, regions, a front and a bar: every table on any ranks and through restarts between their rows.
 #[test]

@@ -30,6 +30,7 @@ mod failure;
 mod flyer;
 mod friction;
 mod gas;
+mod gentle_start;
 mod granular;
 mod hit_bar;
 mod hole;

@@ -15,10 +15,16 @@ use numerics::exact_sum::ExactSum;
 use numerics::vector::{cross, dot};
 use particles::{GRAIN, ParticleStore};
 
-/// The absorbing zones of a case in the current step.
+/// The absorbing zones and the relaxation of a case in the current step.
 #[derive(Debug, Default)]
 pub(crate) struct Absorption {
     zones: Vec<Zone>,
+    /// Rates of the relaxation by body (1/s); empty without.
+    relaxing: Vec<f64>,
+    /// When it ends (s).
+    until: f64,
+    /// True if it acts in this step.
+    relaxes: bool,
     /// By body, the velocity of its matter before waves come (m/s).
     rest: Vec<[f64; 3]>,
     /// A quarter of the step (s).
@@ -37,7 +43,7 @@ struct Zone {
     shear_modulus: f64,
 }
 
-/// Motion of a particle beside forces in a case with absorbing zones.
+/// Motion of a particle beside forces in a case with absorbing zones, a relaxation or pressures on faces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Absorbed {
     prescribed: Prescribed,
@@ -46,9 +52,32 @@ pub(crate) struct Absorbed {
     /// `1/(1 + ¼ γ Δt)`.
     share: f64,
     rest: [f64; 3],
+    /// Acceleration by pressures on faces (m/s²).
+    push: [f64; 3],
 }
 
 impl Absorbed {
+    /// The same under pressures on faces that accelerate it (m/s²).
+    #[inline(always)]
+    pub fn pushed(self, push: [f64; 3]) -> Self {
+        Self { push, ..self }
+    }
+
+    /// Mean velocity (m/s) in a half kick of `half` a step (s) of matter at the velocity `v` (m/s) that forces accelerate
+    /// by `total` (m/s²).
+    #[inline(always)]
+    pub fn mean(
+        &self,
+        stage: VelocityStage,
+        v: &[f64; 3],
+        half: f64,
+        total: &mut [f64; 3],
+    ) -> [f64; 3] {
+        let per_half = if half > 0.0 { 1.0 / half } else { 0.0 };
+        self.accelerate(stage, v, per_half, total);
+        std::array::from_fn(|a| v[a] + 0.5 * half * total[a])
+    }
+
     /// Acceleration (m/s²) of matter at the velocity `v` (m/s) that forces accelerate by `total`.
     #[inline(always)]
     fn slowed(&self, v: &[f64; 3], total: &[f64; 3]) -> [f64; 3] {
@@ -59,7 +88,8 @@ impl Absorbed {
 impl Prescribe for Absorbed {
     #[inline(always)]
     fn accelerate(&self, stage: VelocityStage, v: &[f64; 3], per_half: f64, total: &mut [f64; 3]) {
-        *total = self.slowed(v, total);
+        let pushed = std::array::from_fn(|a| total[a] + self.push[a]);
+        *total = self.slowed(v, &pushed);
         self.prescribed.accelerate(stage, v, per_half, total);
     }
 
@@ -70,7 +100,7 @@ impl Prescribe for Absorbed {
 
     #[inline(always)]
     fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]) {
-        if self.rate > 0.0 {
+        if self.rate > 0.0 || self.push != [0.0; 3] {
             *mean = std::array::from_fn(|a| 0.5 * (whole[a] + middle[a]));
         }
         self.prescribed.correct_mean(whole, middle, mean);
@@ -79,6 +109,11 @@ impl Prescribe for Absorbed {
     #[inline(always)]
     fn is_rigid(&self) -> bool {
         self.prescribed.is_rigid()
+    }
+
+    #[inline(always)]
+    fn push(&self) -> [f64; 3] {
+        self.push
     }
 }
 
@@ -97,34 +132,50 @@ impl Absorption {
         });
         let zones: Vec<Zone> = zones.collect();
         let rest = case.bodies.iter().map(|body| body.velocity.into());
+        let relaxation = case.loads.relaxation.as_ref();
         Self {
-            rest: if zones.is_empty() {
-                Vec::new()
-            } else {
-                rest.collect()
-            },
+            rest: rest.collect(),
             zones,
+            relaxing: relaxation.map_or_else(Vec::new, |relaxation| relaxation.rates.clone()),
+            until: relaxation.map_or(0.0, |relaxation| relaxation.until),
+            relaxes: false,
             quarter: 0.0,
         }
     }
 
-    /// True if there are zones.
+    /// True if there are zones or a relaxation.
     pub fn is_any(&self) -> bool {
-        !self.zones.is_empty()
+        self.count() > 0
     }
 
-    /// Number of zones.
+    /// Number of zones, and one for a relaxation.
     pub fn count(&self) -> usize {
-        self.zones.len()
+        self.zones.len() + usize::from(!self.relaxing.is_empty())
     }
 
     pub fn memory(&self) -> usize {
-        size_of::<Zone>() * self.zones.capacity() + size_of::<[f64; 3]>() * self.rest.capacity()
+        size_of::<Zone>() * self.zones.capacity()
+            + size_of::<[f64; 3]>() * self.rest.capacity()
+            + size_of::<f64>() * self.relaxing.capacity()
     }
 
-    /// Goes on to a step `dt` (s).
-    pub fn prepare(&mut self, dt: f64) {
-        self.quarter = 0.25 * dt;
+    /// Goes on to a step between two times (s).
+    pub fn prepare(&mut self, from: f64, to: f64) {
+        self.quarter = 0.25 * (to - from);
+        self.relaxes = from < self.until;
+    }
+
+    /// Rate of the relaxation of a body (1/s).
+    #[inline(always)]
+    pub fn relaxing(&self, body: u32) -> f64 {
+        if self.relaxes {
+            self.relaxing
+                .get(body as usize)
+                .copied()
+                .unwrap_or_default()
+        } else {
+            0.0
+        }
     }
 
     /// Rate (1/s) of a particle of `body` that begins at `place` (m).
@@ -146,6 +197,7 @@ impl Absorption {
             rate,
             share: 1.0 / (1.0 + self.quarter * rate),
             rest: self.rest[body as usize],
+            push: [0.0; 3],
         }
     }
 
@@ -160,35 +212,43 @@ impl Absorption {
 impl Loads {
     /// True if there are absorbing zones.
     pub(crate) fn absorb(&self) -> bool {
-        self.absorption.is_any()
+        !self.absorption.zones.is_empty()
     }
 
-    /// Books impulse and work of absorbing zones in a half kick of the step that is about to come.
+    /// Books impulse and work of absorbing zones and relaxation in a half kick of the step that is about to come.
     pub(crate) fn book_drag(&mut self, particles: &ParticleStore) {
         let absorption = &self.absorption;
         let half = 2.0 * absorption.quarter;
-        for (n, zone) in absorption.zones.iter().enumerate() {
-            let meant = |i: usize| zone.holds(particles.absorption[i], particles.body[i]);
-            let all = self.sum_where(particles, meant, |i| {
-                let rate = particles.absorption[i];
-                let prescribed = self.of(particles.load.get(i).copied().unwrap_or_default());
-                let contact = particles.contact_acceleration.get(i);
-                let contact = contact.copied().unwrap_or_default();
-                let v = &particles.velocity[i];
-                let forces: [f64; 3] = std::array::from_fn(|a| {
-                    particles.acceleration[i][a] + (contact[a] + self.gravity[a])
-                });
-                let absorbed = absorption.of(prescribed, zone.body, rate);
-                let slowed = absorbed.slowed(v, &forces);
-                let impulse: [f64; 3] = std::array::from_fn(|a| match prescribed.by[a] {
-                    Some(_) => 0.0,
-                    None => particles.mass[i] * half * (slowed[a] - forces[a]),
-                });
-                let mean = std::array::from_fn(|a| v[a] + 0.5 * half * slowed[a]);
-                let [x, y, z] = impulse;
-                let [turn_x, turn_y, turn_z] = cross(&particles.position[i], &impulse);
-                [x, y, z, dot(&impulse, &mean), turn_x, turn_y, turn_z]
-            });
+        for n in 0..absorption.count() {
+            let rate = |i: usize| match absorption.zones.get(n) {
+                Some(zone) if zone.body == particles.body[i] => particles.absorption[i],
+                Some(_) => 0.0,
+                None => absorption.relaxing(particles.body[i]),
+            };
+            let all = self.sum_where(
+                particles,
+                |i| rate(i) > 0.0,
+                |i| {
+                    let prescribed = self.of(particles.load.get(i).copied().unwrap_or_default());
+                    let contact = particles.contact_acceleration.get(i);
+                    let contact = contact.copied().unwrap_or_default();
+                    let push = self.push(particles, i);
+                    let v = &particles.velocity[i];
+                    let forces: [f64; 3] = std::array::from_fn(|a| {
+                        (particles.acceleration[i][a] + (contact[a] + self.gravity[a])) + push[a]
+                    });
+                    let absorbed = absorption.of(prescribed, particles.body[i], rate(i));
+                    let slowed = absorbed.slowed(v, &forces);
+                    let impulse: [f64; 3] = std::array::from_fn(|a| match prescribed.by[a] {
+                        Some(_) => 0.0,
+                        None => particles.mass[i] * half * (slowed[a] - forces[a]),
+                    });
+                    let mean = std::array::from_fn(|a| v[a] + 0.5 * half * slowed[a]);
+                    let [x, y, z] = impulse;
+                    let [turn_x, turn_y, turn_z] = cross(&particles.position[i], &impulse);
+                    [x, y, z, dot(&impulse, &mean), turn_x, turn_y, turn_z]
+                },
+            );
             let (sums, turn) = all.split_at(4);
             let ledger = &mut self.sums[self.motions.len() + n];
             for (sum, part) in ledger.iter_mut().zip(sums) {
@@ -317,7 +377,7 @@ mod tests {
                 rest: vec![[1.0, 0.0, 0.0]],
                 ..Absorption::default()
             };
-            absorption.prepare(1.0);
+            absorption.prepare(0.0, 1.0);
             let kept = absorption.kept(rate);
             assert!((0.0..=1.0).contains(&kept), "{kept}");
             let slowed = absorption.of(Prescribed::default(), 0, rate);

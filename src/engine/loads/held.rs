@@ -74,6 +74,7 @@ impl Held<'_> {
         }
         let contact = contact.copied().unwrap_or_default();
         let prescribed = loads.of(bits);
+        let push = loads.push(particles, i);
         let (mass, v) = (particles.mass[i], &particles.velocity[i]);
         Some(std::array::from_fn(|a| {
             let Some(by) = prescribed.by[a] else {
@@ -85,7 +86,7 @@ impl Held<'_> {
             } else {
                 v[a] - middle
             };
-            let forces = particles.acceleration[i][a] + contact[a];
+            let forces = particles.acceleration[i][a] + contact[a] + push[a];
             let impulse = if prescribed.rigid {
                 -mass * (self.half * forces)
             } else {

@@ -8,10 +8,12 @@
 
 mod absorption;
 mod held;
+mod pressures;
 mod sums;
 mod surface_motion;
 
 pub(crate) use absorption::Absorption;
+pub(crate) use pressures::Acting;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
 use model::{self, Case, Motion};
@@ -69,6 +71,11 @@ pub(crate) trait Prescribe: Copy + Send {
     fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]);
     /// True if the particle is part of a rigid body.
     fn is_rigid(&self) -> bool;
+    /// Acceleration by pressures on faces (m/s²).
+    #[inline(always)]
+    fn push(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
 }
 
 /// No load anywhere.
@@ -133,11 +140,13 @@ pub struct Loads {
     velocities: usize,
     rigid_bits: u32,
     pub(crate) absorption: Absorption,
+    /// Mean pressures on faces in the step (Pa).
+    pressures: Vec<f64>,
     pub(crate) surfaces: Vec<SurfaceStep>,
     /// Acceleration (m/s²).
     pub gravity: [f64; 3],
-    /// Impulse and work of prescribed velocities, rigid bodies and absorbing zones in this step, by
-    /// ledger.
+    /// Impulse and work of prescribed velocities, rigid bodies, absorbing zones, relaxation and pressures in this step,
+    /// by ledger.
     pub(crate) sums: Vec<[ExactSum; 4]>,
     /// Angular impulse about the origin of all of them in this step.
     pub(crate) angular_impulse: [ExactSum; 3],
@@ -161,10 +170,11 @@ impl Loads {
             velocities,
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
             gravity: case.loads.gravity,
-            sums: (0..motions + absorption.count())
+            sums: (0..motions + absorption.count() + case.loads.pressures.len())
                 .map(|_| Default::default())
                 .collect(),
             absorption,
+            pressures: vec![0.0; case.loads.pressures.len()],
             angular_impulse: Default::default(),
         };
         step.prepare(case, 0.0, 0.0);
@@ -176,9 +186,14 @@ impl Loads {
         if dt > 0.0 { 2.0 / dt } else { 0.0 }
     }
 
-    /// True if there is gravity or an absorbing zone, or velocities of any particle are prescribed.
+    /// True if there is anything but rigid surfaces.
     pub(crate) fn act(&self) -> bool {
-        self.has_motions() || self.absorb() || self.gravity != [0.0; 3]
+        self.has_motions() || self.drive() || self.gravity != [0.0; 3]
+    }
+
+    /// True if there is an absorbing zone, a relaxation or a pressure.
+    pub(crate) fn drive(&self) -> bool {
+        self.absorption.is_any() || !self.pressures.is_empty()
     }
 
     /// True if velocities of any particle are prescribed.
@@ -204,10 +219,12 @@ impl Loads {
 
     /// Works out the step from time `from` to `to` (s).
     pub(crate) fn prepare(&mut self, case: &Case, from: f64, to: f64) {
-        self.absorption.prepare(to - from);
-        let middle = from + 0.5 * (to - from);
+        self.absorption.prepare(from, to);
+        for (mean, load) in self.pressures.iter_mut().zip(&case.loads.pressures) {
+            *mean = load.pressure.mean(0, from, to);
+        }
         for (k, load) in case.loads.velocities.iter().enumerate() {
-            self.motions[k] = if middle < load.until {
+            self.motions[k] = if load.holds(from, to) {
                 Prescribed::new(&load.motion, k, false, from, to)
             } else {
                 Prescribed::default()
@@ -268,6 +285,7 @@ impl Loads {
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
             + self.absorption.memory()
+            + size_of::<f64>() * self.pressures.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
 

@@ -5,6 +5,7 @@
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
 //! outside the support adds an exact zero.
 
+mod faces;
 mod formulation;
 mod hourglass_update;
 mod material_update;

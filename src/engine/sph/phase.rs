@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::faces::Faces;
 use super::formulation::{
     Conventional, Corrected, Formulation, Normalised, StressPoints, TotalBodies,
 };
@@ -33,6 +34,7 @@ pub struct Sph {
     sums: Sums,
     /// Plastic strains of images, where materials ask for those of neighbours.
     strains: Vec<f64>,
+    faces: Faces,
 }
 
 enum Form {
@@ -96,6 +98,7 @@ impl Sph {
             },
             sums: Sums::new(case, &Kernel::new(case.dimension)),
             strains: Vec::new(),
+            faces: Faces::new(case, groups),
         }
     }
 
@@ -108,7 +111,11 @@ impl Sph {
             SphForm::Corrected => size_of::<CorrectedRecord>() - size_of::<StressRecord>(),
             SphForm::Conventional | SphForm::StressPoints => 0,
         };
-        term_records::bytes_of_records(&case.sph.terms) + corrected
+        let faces = match case.loads.pressures[..] {
+            [] => 0,
+            [..] => size_of::<[f64; 6]>(),
+        };
+        term_records::bytes_of_records(&case.sph.terms) + corrected + faces
     }
 
     /// Bodies of the total form, if the case has any.
@@ -196,10 +203,10 @@ impl Sph {
         with_form!(&mut self.form, form => form.scratch(images))
     }
 
-    /// The same, and what of the case can rest.
-    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting) {
+    /// The same, what of the case can rest, and what has faces.
+    pub(crate) fn before_rates(&mut self, images: usize) -> (&mut [u64], &Resting, &Faces) {
         let scratch = with_form!(&mut self.form, form => form.scratch(images));
-        (scratch, &self.sums.resting)
+        (scratch, &self.sums.resting, &self.faces)
     }
 
     /// The first sweep: velocity gradient at the end of the step, density and stress from its mean
@@ -218,6 +225,16 @@ impl Sph {
         let sums = &mut self.sums;
         with_form!(&mut self.form, form => form.rates(sums, particles, lists, step));
         sums.terms.prepare(particles, step.dt);
+        if self.faces.is_any() {
+            self.faces.correct(&self.sums, particles, lists);
+        }
+    }
+
+    /// Finds the free faces that pressures act on, after the second sweep.
+    pub fn faces(&mut self, particles: &mut ParticleStore, lists: &Lists) {
+        if self.faces.is_any() {
+            self.faces.find(&self.sums, particles, lists);
+        }
     }
 
     /// Data of halo particles beside fields that the second sweep needs, if any.
@@ -296,6 +313,9 @@ impl Sph {
     #[must_use]
     pub fn memory(&self) -> usize {
         let strains = size_of::<f64>() * self.strains.capacity();
-        self.sums.memory() + strains + with_form!(&self.form, form => form.memory())
+        self.sums.memory()
+            + self.faces.memory()
+            + strains
+            + with_form!(&self.form, form => form.memory())
     }
 }

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::candidate::{BestCandidate, Candidate, Criteria, CriteriaInputs, criteria_fields};
 use crate::diagnose::Moved;
 use crate::domain::Span;
-use crate::loads::{Free, Loads, Prescribe, VelocityStage};
+use crate::loads::{Acting, Free, Loads, Prescribe, VelocityStage};
 use crate::sph::{SignalSpeed, Smoothing};
 use numerics::exact_sum::ExactSum;
 use numerics::vector::dot;
@@ -50,14 +50,16 @@ impl Kick {
 macro_rules! with_outside {
     ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
         let (contact, bits) = (&$particles.contact_acceleration, &$particles.load);
-        if $loads.absorb() {
-            let (body, absorption) = (&$particles.body, &$particles.absorption);
-            let $name = |i: usize| {
-                let contact = contact.get(i).copied().unwrap_or_default();
-                let prescribed = $loads.of(bits.get(i).copied().unwrap_or_default());
-                let absorbed = $loads.absorption.of(prescribed, body[i], absorption[i]);
-                (contact, absorbed)
+        if $loads.drive() {
+            let acting = Acting {
+                contact,
+                load: bits,
+                body: &$particles.body,
+                absorption: &$particles.absorption,
+                pressed: &$particles.pressed,
+                face: &$particles.face,
             };
+            let $name = |i: usize| acting.on(i, $loads);
             $work
         } else if $loads.has_motions() {
             let $name = |i: usize| {
@@ -283,7 +285,7 @@ impl Kicking<'_> {
                             let moved = Moved {
                                 velocity: v[k],
                                 energy: e[k],
-                                contact,
+                                contact: add(&contact, &prescribed.push()),
                             };
                             criteria.ask(i, &moved, &mut best);
                         }

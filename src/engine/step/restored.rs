@@ -60,10 +60,10 @@ pub(super) fn require_own(
             particles.body.iter().any(|&body| body as usize >= bodies)
         }),
         ("it has particles under another load", &|| {
-            particles
-                .load
-                .iter()
-                .any(|&bits| !beginning.loads.knows(bits))
+            let (loads, known) = (beginning.loads, &beginning.case.loads.pressures);
+            let mut pressed = particles.pressed.iter();
+            particles.load.iter().any(|&bits| !loads.knows(bits))
+                || pressed.any(|&bits| u64::from(bits) >> known.len() != 0)
         }),
         ("it has numbers that are not finite", &|| {
             particles

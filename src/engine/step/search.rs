@@ -108,12 +108,13 @@ impl Search {
         // The bodies' own lists serve contact, and the search for folds.
         let links = foreign.is_some() || contact.connectivity.is_active();
         sph.mark(lists, !(links || finds_folds(step)));
-        let (scratch, resting) = sph.before_rates(images);
+        let (scratch, resting, faces) = sph.before_rates(images);
         let connectivity = &mut contact.connectivity;
         connectivity.sample(particles, |i| resting.holds(particles, i));
         let rests = |image: Image| {
             // At the start there are no rates yet.
             step > 0
+                && !faces.has(particles.body[image.slot()])
                 && connectivity.lets_rest(particles, image)
                 && resting.holds(particles, image.slot())
         };

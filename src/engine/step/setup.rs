@@ -89,7 +89,7 @@ impl Filling<'_> {
                 if let Err(why) = start.put(particles, i, id, site.position, site.index) {
                     self.unsound.get_or_insert((id, why));
                 }
-                particles.mass[i] = start.mass * site.share;
+                particles.mass[i] = start.mass_at(particles, i) * site.share;
                 particles.smoothing_length[i] *= edge(site.share, case.dimension);
                 set_from_file(body, particles, i, site.index);
                 Connectivity::begin(particles, i, self.first_id);
@@ -102,6 +102,9 @@ impl Filling<'_> {
                 }
                 if loads.absorb() {
                     particles.absorption[i] = Absorption::rate(case, b, &site.position);
+                }
+                if let Some(pressed) = particles.pressed.get_mut(i) {
+                    *pressed = Loads::pressed(case, b, &site.position);
                 }
                 if let Some(time) = particles.lighting_time.get_mut(i) {
                     *time = case.lighting_time(b, &site.position.into());
@@ -129,7 +132,7 @@ impl Filling<'_> {
                 if let Err(why) = start.put(particles, i, id, site.position, site.index) {
                     self.unsound.get_or_insert((id, why));
                 }
-                particles.stress_mass[i] = start.mass * site.share;
+                particles.stress_mass[i] = start.mass_at(particles, i) * site.share;
                 if loads.absorb() {
                     particles.absorption[i] = Absorption::rate(case, b, &site.position);
                 }
@@ -168,6 +171,14 @@ impl<'a> Start<'a> {
         }
     }
 
+    /// Mass (kg) of a whole particle at place `i` of the store: under a stress its volume is that of its site.
+    fn mass_at(&self, particles: &ParticleStore, i: usize) -> f64 {
+        match self.body.initial.loading {
+            Some(_) => self.mass * (particles.density[i] / self.case.initial_density(self.body)),
+            None => self.mass,
+        }
+    }
+
     /// Puts a particle at place `i` of the store, or says in words how it is out of range.
     fn put(
         &self,
@@ -190,6 +201,10 @@ impl<'a> Start<'a> {
         let held = |value| if self.holds_state { value } else { 0.0 };
         particles.specific_energy[i] = held(begins.specific_energy);
         particles.plastic_strain[i] = held(begins.plastic_strain);
+        particles.deviatoric_stress[i] = begins.deviatoric_stress.map(held);
+        if let Some(compaction) = particles.compaction.get_mut(i) {
+            *compaction = held(begins.compaction);
+        }
         if begins.fault().is_none() {
             return Ok(());
         }

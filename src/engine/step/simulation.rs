@@ -262,6 +262,7 @@ impl Simulation {
         loads.prepare(case, state.time, end);
         loads.book(particles, dt, true);
         loads.book_drag(particles);
+        loads.book_pressures(particles, dt, true);
         state.book_first_half(loads, dt);
         particles.resize_halo(0);
         search.activity.reactivate_moved(particles);
@@ -369,6 +370,7 @@ impl Simulation {
         halo.finish(particles, stress, sph.payload());
         timers.lap(Phase::HaloStress);
         sph.forces(particles, lists, Side::Outer);
+        sph.faces(particles, lists);
         timers.lap(Phase::Momentum);
         if contact.table.has_friction() {
             contact.resist(particles, lists, dt);
@@ -402,6 +404,7 @@ impl Simulation {
             ..
         } = self;
         loads.book_drag(particles);
+        loads.book_pressures(particles, dt, false);
         let criteria = step_control.criteria(sph, loads.gravity);
         let active = search.active_mut(particles);
         let kicked = with_formulation!(case.sph.form, Form => {

@@ -9,8 +9,8 @@ use toml::Spanned;
 use super::forms::{Named, OneOrMany};
 use super::profile::ProfileParams;
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Placed, SpecificEnergy, Strain, Temperature,
-    Time, Velocity,
+    Acceleration, Angle, Density, Extent, Length, Placed, Pressure, Rate, SpecificEnergy, Strain,
+    Temperature, Time, Velocity,
 };
 use super::source::Diagnostic;
 use model::{Axis, BodyForm, SphForm, TermOptions, pair_terms};
@@ -83,6 +83,11 @@ tables! {
         /// Prescribed velocities.
         #[serde(default)]
         load: Vec<Spanned<LoadParams>>;
+        /// Pressures on faces.
+        #[serde(default)]
+        pressure: Vec<Spanned<PressureParams>>;
+        /// What brings bodies to rest at first.
+        relaxation: Option<Spanned<RelaxationParams>> => "none";
         /// Points from which detonations run.
         #[serde(default)]
         detonate: Vec<Spanned<DetonateParams>>;
@@ -153,6 +158,12 @@ tables! {
         temperature: Option<Spanned<ProfileParams<Temperature>>>;
         /// Initial equivalent plastic strain.
         plastic_strain: Option<Spanned<ProfileParams<Strain>>> => "none";
+        /// Initial pressure, compression positive, from which the density follows.
+        pressure: Option<Spanned<ProfileParams<Pressure>>> => "that of the density";
+        /// Initial stress, tension positive, in place of it.
+        stress: Option<Spanned<StressParams>> => "that pressure alone";
+        /// True if the body begins under the weight of what lies above, or with which share of it on its sides.
+        overburden: Option<Spanned<OverburdenParams>> => "false";
         /// Configuration whose neighbours its sums are over: the initial one until it tears (total), that of each step
         /// (updated), or the initial one of what yields and nothing meets faster than a tenth of its sound speed (auto).
         form: Option<Spanned<BodyForm>> = BodyForm::Auto;
@@ -178,6 +189,32 @@ tables! {
         velocity: Spanned<MotionParams>;
         /// When the particles are free again.
         until: Option<Placed<Time>>, Positive => "never";
+    }
+
+    /// `[[pressure]]`
+    PressureParams {
+        /// Name in reports, as of a body.
+        name: Option<Spanned<String>> => "`pressure-1` and so on";
+        /// Name of a body.
+        body: Spanned<String>;
+        /// Smallest coordinates of the region.
+        above: Option<Spanned<SidesParams>> => "open";
+        /// Largest coordinates of the region.
+        below: Option<Spanned<SidesParams>> => "open";
+        /// Times of the table.
+        times: Option<Spanned<Vec<Placed<Time>>>>;
+        /// The pressure on the free faces of what is in the region.
+        value: Spanned<OneOrMany<Pressure>>;
+    }
+
+    /// `[relaxation]`
+    RelaxationParams {
+        /// When it ends.
+        until: Placed<Time>, Positive;
+        /// Rate at which velocities fall.
+        rate: Option<Placed<Rate>>, Positive => "critical for the slowest vibration of the bodies together";
+        /// Names of the bodies that wait, and start when it ends.
+        waiting: Option<Vec<Spanned<String>>> => "none";
     }
 
     /// `[[absorb]]`
@@ -210,6 +247,22 @@ tables! {
         above: Option<Spanned<SidesParams>> => "open";
         /// Largest coordinates.
         below: Option<Spanned<SidesParams>> => "open";
+    }
+
+    /// `stress` of a body: components, tension positive, zero where absent.
+    StressParams {
+        /// On the faces normal to x.
+        xx: Option<Spanned<ProfileParams<Pressure>>>;
+        /// On the faces normal to y.
+        yy: Option<Spanned<ProfileParams<Pressure>>>;
+        /// On the faces normal to z.
+        zz: Option<Spanned<ProfileParams<Pressure>>>;
+        /// Shear in the plane of x and y.
+        xy: Option<Spanned<ProfileParams<Pressure>>>;
+        /// Shear in the plane of x and z.
+        xz: Option<Spanned<ProfileParams<Pressure>>>;
+        /// Shear in the plane of y and z.
+        yz: Option<Spanned<ProfileParams<Pressure>>>;
     }
 
     /// A velocity as a function of time; free on axes that are absent.

@@ -9,6 +9,8 @@ const MOST_SAMPLES: u64 = 1_000_000;
 /// A pressure from the start is worth a warning from this share of the bulk modulus on: that of a
 /// metal 15 K warmer.
 const PRESSURE: f64 = 1e-3;
+/// Densities over that of the reference state that are worth no warning.
+const SOUND: std::ops::Range<f64> = 0.8..1.5;
 
 /// Initial values of the particles of a body, from the smallest to the largest; `None` for a body at
 /// rest in its material's reference state.
@@ -44,14 +46,17 @@ pub fn beginning(case: &Case, body: &Body) -> Option<String> {
         }
         Heat::Reference => {}
     }
-    if let Some(density) = body.density {
-        words.push(format!("density {}", shown(density, "kg/m^3")));
+    if body.density.is_some() {
+        words.push(format!("density {}", ranges.density.words("kg/m^3")));
     }
     let is_given = [Quantity::Density, Quantity::SpecificEnergy]
         .into_iter()
         .any(|quantity| body.holds(quantity));
     if body.density.is_some() || body.initial.heat != Heat::Reference || is_given {
         words.push(format!("pressure {}", ranges.pressure.words("Pa")));
+    }
+    if ranges.shear.0 != [0.0; 2] {
+        words.push(format!("shear (von Mises) {}", ranges.shear.words("Pa")));
     }
     if ranges.strain.0 != [0.0; 2] {
         words.push(format!("plastic strain {}", ranges.strain.words("")));
@@ -87,6 +92,30 @@ pub fn warnings(case: &Case, messages: &mut Vec<String>) {
             body.name,
             shown(largest, "Pa"),
         ));
+    }
+}
+
+/// Bodies that the stress which they begin under compresses or stretches beyond what their material is made for.
+pub fn squeezed(case: &Case, messages: &mut Vec<String>) {
+    for body in &case.bodies {
+        let Some(loading) = &body.initial.loading else {
+            continue;
+        };
+        let reference = case.materials[body.material].reference_density;
+        let [low, high] = Ranges::of(case, body, MOST_SAMPLES / 100).density.0;
+        let densest = if high / reference > reference / low {
+            high
+        } else {
+            low
+        };
+        if !SOUND.contains(&(densest / reference)) {
+            messages.push(format!(
+                "the `{}` that `{}` begins under brings its material to {} times its reference density",
+                loading.key(),
+                body.name,
+                shown(densest / reference, "")
+            ));
+        }
     }
 }
 
@@ -143,7 +172,9 @@ struct Ranges {
     velocity: [Range; 3],
     temperature: Range,
     energy: Range,
+    density: Range,
     pressure: Range,
+    shear: Range,
     strain: Range,
 }
 
@@ -154,7 +185,9 @@ impl Ranges {
             velocity: [Range::NONE; 3],
             temperature: Range::NONE,
             energy: Range::NONE,
+            density: Range::NONE,
             pressure: Range::NONE,
+            shear: Range::NONE,
             strain: Range::NONE,
         };
         let alike = !body.initial.varies() && body.speed_spread() == 0.0 && body.cloud().is_none();
@@ -179,9 +212,16 @@ impl Ranges {
             range.include(*v);
         }
         let energy = initial.specific_energy;
-        let state = material.virgin(initial.density, energy);
+        let state = match body.initial.loading {
+            None => material.virgin(initial.density, energy),
+            Some(_) => material.loaded(initial.density, energy),
+        };
         self.temperature.include(initial.temperature.unwrap_or(0.0));
         self.energy.include(energy);
+        self.density.include(initial.density);
+        let [xx, yy, zz, xy, xz, yz] = initial.deviatoric_stress;
+        let square = (xx * xx + yy * yy + zz * zz) + 2.0 * (xy * xy + xz * xz + yz * yz);
+        self.shear.include((1.5 * square).sqrt());
         // Failed material bears no tension.
         let row = usize::try_from(site.index).unwrap_or(usize::MAX);
         let damage = body

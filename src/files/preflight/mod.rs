@@ -70,6 +70,7 @@ pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     case::meetings(case, approaches, &mut messages);
     impact::warnings(case, approaches, &mut messages);
     initial::warnings(case, &mut messages);
+    initial::squeezed(case, &mut messages);
     sense::warnings(case, approaches, &mut messages);
     messages
 }

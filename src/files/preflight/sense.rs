@@ -21,6 +21,9 @@ const ROUNDING: f64 = 0.01;
 /// Bodies nearer to each other begin in touch (mean spacings).
 const TOUCH: f64 = 0.1;
 
+/// A relaxation that leaves more than this of vibrations is too short.
+const MOST_LEFT: f64 = 0.02;
+
 /// One line for each.
 pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
     unused_materials(case, messages);
@@ -31,6 +34,7 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
     pairs(case, approaches, messages);
     coefficients(case, messages);
     weight_on_zones(case, messages);
+    relaxation(case, messages);
     viscosity_for_step(case, messages);
     times(case, messages);
     let fragments = case.fragments.as_ref();
@@ -98,6 +102,23 @@ fn weight_on_zones(case: &Case, messages: &mut Vec<String>) {
         messages.push(format!(
             "under gravity `{}` sinks through its absorbing zone, which bears no weight",
             case.bodies[absorber.body].name
+        ));
+    }
+}
+
+/// A relaxation that ends before bodies are at rest.
+fn relaxation(case: &Case, messages: &mut Vec<String>) {
+    let Some(relaxation) = &case.loads.relaxation else {
+        return;
+    };
+    let rate = relaxation.rates.iter().fold(0.0_f64, |a, &b| a.max(b));
+    let left = libm::exp(-0.5 * rate * relaxation.until);
+    if left > MOST_LEFT {
+        messages.push(format!(
+            "the relaxation leaves {:.0} % of vibrations: its rate is {}, and it ends at {}",
+            100.0 * left,
+            shown(rate, "1/s"),
+            shown(relaxation.until, "s")
         ));
     }
 }

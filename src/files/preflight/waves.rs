@@ -215,7 +215,8 @@ pub(super) fn can_rest(case: &Case) -> bool {
 fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
     let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
         && case.loads.gravity == [0.0; 3]
-        && case.loads.velocities.is_empty();
+        && case.loads.velocities.is_empty()
+        && case.loads.pressures.is_empty();
     known.then_some(())?;
     let still: Vec<_> = case.bodies.iter().map(|body| still(case, body)).collect();
     still.iter().any(Option::is_some).then_some(still)

@@ -171,6 +171,18 @@ macro_rules! equations_of_state {
                 }
             }
 
+            /// A point of porous matter that was virgin, of a density (kg/m³) and a specific energy (J/kg).
+            pub(super) fn first(
+                &self,
+                porosity: &Porosity,
+                state: [f64; 2],
+                crushes: bool,
+            ) -> PorousPoint {
+                match self {
+                    $( Self::$law(law) => porosity.first(law, state, crushes), )+
+                }
+            }
+
             /// [`Self::response`] of the equations that act in a function of their own.
             #[inline(never)]
             fn apart(&self, rho0: f64, rho: &Lanes, e: &Lanes) -> Response {

@@ -227,16 +227,23 @@ macro_rules! laws {
                 match &self.law {
                     $( Compaction::$law(law) => {
                         std::array::from_fn(|k| {
-                            let e = batch.specific_energy[k];
-                            let at = self.state(batch.density[k], batch.compaction[k], crushes);
-                            let solid = |rho| eos.at(self.solid.density, rho, e);
-                            let mut point = law.advance(&at, solid);
-                            if point.compaction > at.compaction {
-                                point.crushed = law.permanent(&at, &solid, point.compaction)
-                                    - law.permanent(&at, &solid, at.compaction);
-                            }
-                            point
+                            let state = [batch.density[k], batch.specific_energy[k], batch.compaction[k]];
+                            self.by_law(law, eos, state, crushes)
                         })
+                    } )+
+                }
+            }
+
+            /// A point that was virgin, of a density (kg/m³) and a specific energy (J/kg).
+            pub(super) fn first<E: EquationOfState>(
+                &self,
+                eos: &E,
+                [density, energy]: [f64; 2],
+                crushes: bool,
+            ) -> PorousPoint {
+                match &self.law {
+                    $( Compaction::$law(law) => {
+                        self.by_law(law, eos, [density, energy, 0.0], crushes)
                     } )+
                 }
             }
@@ -317,6 +324,25 @@ impl Porosity {
         let of_law = constants.into_iter();
         rows.extend(of_law.map(|(key, value)| (format!("{law}.{key}"), value)));
         rows
+    }
+
+    /// A point of a density (kg/m³), specific energy (J/kg) and compaction by one law.
+    #[inline(always)]
+    fn by_law<L: CompactionLaw, E: EquationOfState>(
+        &self,
+        law: &L,
+        eos: &E,
+        [density, energy, compaction]: [f64; 3],
+        crushes: bool,
+    ) -> PorousPoint {
+        let at = self.state(density, compaction, crushes);
+        let solid = |rho| eos.at(self.solid.density, rho, energy);
+        let mut point = law.advance(&at, solid);
+        if point.compaction > at.compaction {
+            point.crushed = law.permanent(&at, &solid, point.compaction)
+                - law.permanent(&at, &solid, at.compaction);
+        }
+        point
     }
 
     fn state(&self, density: f64, compaction: f64, crushes: bool) -> PoreState<'_> {

@@ -77,6 +77,16 @@ impl Exact {
         if case.loads.has_gravity() || !case.loads.surfaces.is_empty() {
             return Err("there is gravity or a rigid surface".to_owned());
         }
+        if !case.loads.pressures.is_empty() || case.loads.relaxation.is_some() {
+            return Err("there is a pressure on a face or a relaxation".to_owned());
+        }
+        if case
+            .bodies
+            .iter()
+            .any(|body| body.initial.loading.is_some())
+        {
+            return Err("a body begins under a stress".to_owned());
+        }
         if !case.loads.absorbers.is_empty() {
             return Err("there is an absorbing zone".to_owned());
         }

@@ -55,6 +55,12 @@ tables! {
         radius: Placed<Length>, Positive;
     }
 
+    /// `overburden` as a table.
+    OverburdenTable {
+        /// Stress on the sides over that from above.
+        lateral: Option<Spanned<f64>> = 1.0, Within(0.0, 10.0);
+    }
+
     /// `angular_velocity` as a table.
     AngularVelocityTable {
         /// About x, y and z; in two dimensions about z.
@@ -215,6 +221,22 @@ typed_as! {
     RoundParams: "true, false, or a table with `centre`, `axis` and `radius`" {
         truth: RoundParams::Is;
         table: RoundParams::Of;
+    }
+}
+
+/// True if there is a weight above, or a table of what it does.
+#[derive(Debug)]
+pub enum OverburdenParams {
+    /// As much on the sides, or none.
+    Is(bool),
+    /// Another share on the sides.
+    Of(OverburdenTable),
+}
+
+typed_as! {
+    OverburdenParams: "true, false, or a table with `lateral`" {
+        truth: OverburdenParams::Is;
+        table: OverburdenParams::Of;
     }
 }
 

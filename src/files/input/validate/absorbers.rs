@@ -66,6 +66,12 @@ impl Reader<'_> {
                 "the body `{}` turns, which an absorbing zone would stop",
                 body.name
             )
+        } else if let Some(loading) = &body.initial.loading {
+            format!(
+                "an absorbing zone would relax the `{}` that `{}` begins under",
+                loading.key(),
+                body.name
+            )
         } else if material.p_wave_modulus() == 0.0 {
             format!(
                 "the gas `{}` has no modulus that would tell the speed of waves",

@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 
 use super::check::components;
+use super::loading;
 use crate::input::formula;
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Kind, Velocity, demand};
@@ -109,12 +110,13 @@ pub fn initial(
         velocity,
         heat,
         plastic_strain: strain.unwrap_or_default(),
+        loading: loading::stated(params, dimension)?,
         ..Initial::default()
     })
 }
 
 /// The profile of a key, of the kind that it wants.
-fn profile<K: Kind>(
+pub fn profile<K: Kind>(
     given: &Spanned<ProfileParams<K>>,
     dimension: usize,
 ) -> Result<Profile, Diagnostic> {
@@ -214,11 +216,25 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
     };
     if !body.initial.varies() {
         // What turns is looked at particle by particle as the run begins.
-        return refuse(&body.shape.centre()).map_or(Ok(()), Err);
+        let centre = body.shape.centre();
+        if let Some(diagnostic) = refuse(&centre) {
+            return Err(diagnostic);
+        }
+        let even = case.stressed(
+            body,
+            &centre,
+            body.initial.plastic_strain.constant().unwrap_or(0.0),
+        );
+        if let Some(Ok(even)) = even {
+            let body = &mut case.bodies[b];
+            (body.initial.even, body.density) = (Some(even), Some(even.density));
+        }
+        return Ok(());
     }
     let (places, all) = populate::sample(body, case.dimension, &case.symmetry, MOST_PLACES);
     let mut ends = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
     let mut largest = 0.0_f64;
+    let (mut densities, mut found_places) = (0.0, 0.0);
     for site in places {
         let position = Vec3::from(site.position);
         match refuse(&position) {
@@ -231,6 +247,8 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
         if found.specific_energy.abs() > largest.abs() {
             largest = found.specific_energy;
         }
+        densities += found.density;
+        found_places += 1.0;
         if let Some(components) = &body.initial.velocity {
             let place = Place::new(&position, &body.shape.centre());
             for (ends, component) in ends.iter_mut().zip(components) {
@@ -241,6 +259,9 @@ fn survey(case: &mut Case, b: usize, table: &Spanned<BodyParams>) -> Result<(), 
     }
     let body = &mut case.bodies[b];
     body.initial.largest_energy = largest;
+    if body.initial.loading.is_some() && found_places > 0.0 {
+        body.density = Some(densities / found_places);
+    }
     if body.initial.velocity.is_some() && ends[0][0].is_finite() {
         let half = |sign: f64| Vec3::from(ends.map(|[low, high]| 0.5 * (high + sign * low)));
         body.velocity = half(1.0);
@@ -259,6 +280,9 @@ pub fn key_span(table: &Spanned<BodyParams>, key: &str) -> Range<usize> {
         }
         "temperature" => params.temperature.as_ref().map(Spanned::span),
         "specific_energy" => params.specific_energy.as_ref().map(Spanned::span),
+        "pressure" => params.pressure.as_ref().map(Spanned::span),
+        "stress" => params.stress.as_ref().map(Spanned::span),
+        "overburden" => params.overburden.as_ref().map(Spanned::span),
         _ => params.plastic_strain.as_ref().map(Spanned::span),
     };
     let turn = params.angular_velocity.as_ref().map(Spanned::span);

@@ -1,19 +1,20 @@
-//! Gravity and prescribed velocities; rigid surfaces stand in `surfaces`.
+//! Gravity, prescribed velocities and pressures; rigid surfaces stand in `surfaces`.
 
+use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
 
-use super::motion::motion;
+use super::motion::{self, motion};
 use super::region::region;
 use super::shapes::vector;
 use super::touch;
 use crate::input::names;
 use crate::input::quantity::{Acceleration, Placed};
-use crate::input::schema::{CaseParams, LoadParams};
+use crate::input::schema::{CaseParams, LoadParams, PressureParams, SidesParams};
 use crate::input::source::Diagnostic;
 use model::readable::Readable;
-use model::{Body, Loads, RigidSurface, SymmetryPlane, VelocityLoad};
+use model::{Body, Loads, PressureLoad, Region, RigidSurface, SymmetryPlane, VelocityLoad};
 use populate::{self, Wanted};
 
 /// Inputs of the reading of loads.
@@ -54,6 +55,13 @@ impl Reader<'_> {
             );
             return Err(Diagnostic::new(table.span(), title));
         }
+        if let Some(table) = params.pressure.get(Loads::MOST) {
+            let title = format!("a case can have at most {} pressures", Loads::MOST);
+            return Err(Diagnostic::new(table.span(), title));
+        }
+        let pressures = params.pressure.iter().enumerate();
+        let pressures = pressures.map(|(n, table)| self.pressure(table.get_ref(), n + 1));
+        let pressures = pressures.collect::<Result<_, _>>()?;
         self.check_names(params)?;
         self.check_starts(params, &surfaces)?;
         Ok(Loads {
@@ -62,6 +70,8 @@ impl Reader<'_> {
             absorbers: Vec::new(),
             surfaces,
             detonators: Vec::new(),
+            pressures,
+            relaxation: None,
         })
     }
 
@@ -71,8 +81,10 @@ impl Reader<'_> {
             let loads = params.load.iter().map(|t| ("load", &t.get_ref().name));
             let planes = params.plane.iter().map(|t| ("plane", &t.get_ref().name));
             let zones = params.absorb.iter().map(|t| ("zone", &t.get_ref().name));
+            let pressures = (params.pressure.iter()).map(|t| ("pressure", &t.get_ref().name));
             let surfaces = (params.surface.iter()).map(|t| ("surface", &t.get_ref().name));
-            let all = loads.chain(zones).chain(planes).chain(surfaces);
+            let all = loads.chain(zones).chain(pressures);
+            let all = all.chain(planes).chain(surfaces);
             all.filter_map(|(kind, name)| Some((kind, name.as_ref()?)))
         };
         for (n, (kind, name)) in named().enumerate() {
@@ -134,12 +146,46 @@ impl Reader<'_> {
             )?,
             motion: motion(&params.velocity, self.dimension)?,
             until: params.until()?.unwrap_or(f64::INFINITY),
+            starts: false,
         };
-        if self.holds_any(&load, body) {
-            return Ok(load);
+        let sides = [params.above.as_ref(), params.below.as_ref()];
+        self.check_region(body, &load.region, sides, params.body.span())?;
+        Ok(load)
+    }
+
+    fn pressure(
+        &self,
+        params: &PressureParams,
+        number_of: usize,
+    ) -> Result<PressureLoad, Diagnostic> {
+        let (index, body) = self.body(&params.body)?;
+        if body.rigid.is_some() {
+            let title = format!("the body `{}` is rigid: no pressure moves it", body.name);
+            return Err(Diagnostic::new(params.body.span(), title));
         }
-        let at = params.below.as_ref().or(params.above.as_ref());
-        let at = at.map_or(params.body.span(), Spanned::span);
+        let sides = [params.above.as_ref(), params.below.as_ref()];
+        let load = PressureLoad {
+            name: given_name(params.name.as_ref(), "pressure", number_of),
+            body: index,
+            region: region(sides, self.dimension, body.lattice.spacing)?,
+            pressure: motion::pressure(params)?,
+        };
+        self.check_region(body, &load.region, sides, params.body.span())?;
+        Ok(load)
+    }
+
+    /// Refuses a region, between the sides `above` and `below`, that holds no particle of a body named at a place.
+    fn check_region(
+        &self,
+        body: &Body,
+        region: &Region,
+        [above, below]: [Option<&Spanned<SidesParams>>; 2],
+        named: Range<usize>,
+    ) -> Result<(), Diagnostic> {
+        if self.holds_any(region, body) {
+            return Ok(());
+        }
+        let at = below.or(above).map_or(named, Spanned::span);
         let title = format!("the region holds no particle of `{}`", body.name);
         let (lower, upper) = populate::bounds(body, self.dimension).unwrap_or_default();
         let corner = |x: [f64; 3]| self.length_unit.vector(&x[..self.dimension]);
@@ -150,8 +196,8 @@ impl Reader<'_> {
         )))
     }
 
-    /// True if a load drives any particle of its body.
-    fn holds_any(&self, load: &VelocityLoad, body: &Body) -> bool {
+    /// True if a region holds any particle of a body.
+    fn holds_any(&self, region: &Region, body: &Body) -> bool {
         // Nought in the region and infinite beyond.
         let value = |is_within: bool| if is_within { 0.0 } else { f64::INFINITY };
         let found = populate::search(
@@ -161,8 +207,8 @@ impl Reader<'_> {
                 limit: 1.0,
                 any: true,
             },
-            |lower, upper| value(load.region.meets(lower, upper)),
-            |x| value(load.region.contains(x)),
+            |lower, upper| value(region.meets(lower, upper)),
+            |x| value(region.contains(x)),
         );
         !found.is_empty()
     }

@@ -16,6 +16,7 @@ mod grading;
 mod initial;
 mod lattice;
 mod laws;
+mod loading;
 mod loads;
 mod materials;
 mod measure;
@@ -27,7 +28,9 @@ mod numerical_limits;
 mod output;
 mod particles;
 mod porosity;
+mod pressures;
 mod region;
+mod relaxation;
 mod shapes;
 mod solids;
 mod strength;
@@ -118,10 +121,13 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
 
 /// Reads what asks a case, and checks what does not go together in it.
 fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
+    loading::resolve(case, &params.body)?;
     initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
+    relaxation::relax(case, params)?;
     case.loads.detonators = detonators::detonators(&params.detonate, &params.body, case)?;
+    pressures::check_form(case, &params.pressure)?;
     total::resolve(case, &params.body)?;
     // Its defaults hang on the forms of bodies.
     case.time_step = time_step(

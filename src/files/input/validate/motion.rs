@@ -6,7 +6,7 @@ use super::check::Value;
 use super::in_dimension;
 use crate::input::forms::OneOrMany;
 use crate::input::quantity::{Placed, Time};
-use crate::input::schema::{MotionParams, RotationParams};
+use crate::input::schema::{MotionParams, PressureParams, RotationParams};
 use crate::input::source::Diagnostic;
 use model::{Axis, Motion};
 
@@ -37,6 +37,17 @@ pub fn rate(params: &RotationParams) -> Result<Motion, Diagnostic> {
     let times = times(params.times.as_ref())?;
     let timed = params.times.is_some();
     let values = along(&params.rate, "rate", timed, times.len())?;
+    Ok(Motion {
+        times,
+        velocities: [Some(values), None, None],
+    })
+}
+
+/// A pressure (Pa) as a motion along the first axis.
+pub fn pressure(params: &PressureParams) -> Result<Motion, Diagnostic> {
+    let times = times(params.times.as_ref())?;
+    let timed = params.times.is_some();
+    let values = along(&params.value, "value", timed, times.len())?;
     Ok(Motion {
         times,
         velocities: [Some(values), None, None],
