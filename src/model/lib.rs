@@ -49,7 +49,7 @@ pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
-pub use load::{Detonator, Loads, VelocityLoad};
+pub use load::{Detonator, Loads, SelfGravity, VelocityLoad};
 pub use measure::{
     Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,
 };

@@ -188,6 +188,8 @@ macro_rules! owners {
                 const POROUS = 1 << 27;
                 /// Explosives.
                 const EXPLOSIVE = 1 << 28;
+                /// Self-gravity.
+                const SELF_GRAVITY = 1 << 29;
                 /// Materials that bulk as they break.
                 const BULKING = 1 << 31;
                 $(

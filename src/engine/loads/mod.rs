@@ -12,6 +12,7 @@ mod sums;
 mod surface_motion;
 
 pub(crate) use absorption::Absorption;
+pub(crate) use sums::sum_over;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
 use model::{self, Case, Motion};

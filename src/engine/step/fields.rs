@@ -13,6 +13,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let localises = case.materials.iter().any(|m| m.failure.localises());
     let used = [
         (Owner::LOADS, driven),
+        (Owner::SELF_GRAVITY, case.loads.self_gravity.is_some()),
         (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),
         (Owner::SELF_CONTACT, case.self_contact.is_some()),
         (

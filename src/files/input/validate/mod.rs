@@ -28,6 +28,7 @@ mod output;
 mod particles;
 mod porosity;
 mod region;
+mod self_gravity;
 mod shapes;
 mod solids;
 mod strength;
@@ -118,6 +119,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
 
 /// Reads what asks a case, and checks what does not go together in it.
 fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
+    case.loads.self_gravity = self_gravity::self_gravity(case, params)?;
     initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
