@@ -31,6 +31,7 @@ mod flyer;
 mod friction;
 mod gas;
 mod granular;
+mod gravity;
 mod hit_bar;
 mod hole;
 mod options;

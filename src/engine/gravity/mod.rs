@@ -29,6 +29,13 @@ use particles::{GRAIN, Mirrors, ParticleStore, Scatter, resize};
 use tree::Point;
 use trees::Trees;
 
+/// Bytes that the trees take for an owned particle, and for one of a halo, if there is a halo: twice as many are told. Cells hold
+/// some fifteen particles.
+pub const BYTES: [usize; 2] = {
+    let point = size_of::<Point>() + tree::BYTES_OF_BIN / 15;
+    [2 * point + size_of::<[f64; 3]>(), 6 * point]
+};
+
 /// Self-gravity of a case that has it.
 pub struct SelfGravity {
     options: model::SelfGravity,

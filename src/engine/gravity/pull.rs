@@ -19,7 +19,7 @@ const DEEPEST: f64 = 1.4;
 
 /// Gravity of a particle with the mass distribution of the kernel: acceleration over the distance, and potential,
 /// of unit mass at a distance (m) within the support of a smoothing length (m). Price & Monaghan (2007), MNRAS 374, 1347,
-/// equations A1 to A4.
+/// appendix A.
 pub(super) fn softened(distance: f64, length: f64) -> [f64; 2] {
     let inverse = 1.0 / length;
     let q = distance * inverse;

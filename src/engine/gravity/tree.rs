@@ -51,6 +51,10 @@ pub(super) struct Cell {
     pub inside: u32,
 }
 
+/// Bytes of a bin, with the cells above it.
+pub(super) const BYTES_OF_BIN: usize =
+    size_of::<Bin>() + 2 * (size_of::<Cell>() + size_of::<Moments>() + size_of::<Pole>());
+
 /// The tree. Cells stand depth first, with gaps.
 #[derive(Debug, Default)]
 pub(super) struct Tree {

@@ -9,6 +9,10 @@ pub fn self_gravity(case: &Case, params: &CaseParams) -> Result<Option<SelfGravi
     let Some(table) = &params.self_gravity else {
         return Ok(None);
     };
+    let options = SelfGravity {
+        constant: table.get_ref().constant()?,
+        opening_angle: table.get_ref().opening_angle()?,
+    };
     let refused = |title: String, help: &str| Err(Diagnostic::new(table.span(), title).help(help));
     if case.dimension != 3 {
         let title = format!(
@@ -32,9 +36,5 @@ pub fn self_gravity(case: &Case, params: &CaseParams) -> Result<Option<SelfGravi
         let title = "stress points do not know self-gravity";
         return refused(title.to_owned(), "take another `sph.form`");
     }
-    let params = table.get_ref();
-    Ok(Some(SelfGravity {
-        constant: params.constant()?,
-        opening_angle: params.opening_angle()?,
-    }))
+    Ok(Some(options))
 }
