@@ -126,21 +126,32 @@ fn check_all() {
     let comm = Comm::solo();
     // The pool of threads is there before anything is counted.
     rayon::join(|| (), || ());
-    check(&comm, &[]);
+    check(&comm, CASE, &[]);
     let options = [
         "artificial_stress=0.3",
         "balsara=true",
         "conduction=1",
         "xsph=0.5",
     ];
-    check(&comm, &options.map(|option| format!("sph.{option}")));
+    check(&comm, CASE, &options.map(|option| format!("sph.{option}")));
     let contact = ["self_contact={folds=8}", "friction=0.3"];
-    check(&comm, &contact.map(|option| format!("contact.{option}")));
+    check(
+        &comm,
+        CASE,
+        &contact.map(|option| format!("contact.{option}")),
+    );
+    // Nothing that is rigid or has no end attracts.
+    let zone = "[[absorb]]\nbody = \"below\"\nfaces = [\"+y\"]\ndepth = \"8 spacing\"\n";
+    let soft = CASE
+        .replace("rigid = true", "material = \"aluminium\"")
+        .replace(zone, "");
+    let gravity = "self_gravity.constant=1 m^3/(kg s^2)".to_owned();
+    check(&comm, &soft, &[gravity]);
 }
 
-fn check(comm: &Comm, set: &[String]) {
+fn check(comm: &Comm, text: &str, set: &[String]) {
     let held_before = HELD.load(Ordering::Relaxed);
-    let case = input::parse("case", CASE, set).unwrap_or_else(|e| panic!("{e}"));
+    let case = input::parse("case", text, set).unwrap_or_else(|e| panic!("{e}"));
     let mut simulation = Simulation::start(case, comm).expect("it starts");
     for _ in 0..20 {
         simulation.advance(comm).expect("a step");
