@@ -141,10 +141,13 @@ fn check_all() {
         &contact.map(|option| format!("contact.{option}")),
     );
     // Nothing that is rigid or has no end attracts.
-    let zone = "[[absorb]]\nbody = \"below\"\nfaces = [\"+y\"]\ndepth = \"8 spacing\"\n";
-    let soft = CASE
-        .replace("rigid = true", "material = \"aluminium\"")
-        .replace(zone, "");
+    let without = |text: &str, begin: &str, end: &str| {
+        let (before, rest) = text.split_once(begin).expect("its begin");
+        let (_, after) = rest.split_once(end).expect("its end");
+        format!("{before}{end}{after}")
+    };
+    let soft = without(CASE, "[[body]]\nname = \"rigid\"", "[[load]]");
+    let soft = without(&soft, "[[absorb]]", "[[plane]]");
     let gravity = "self_gravity.constant=1 m^3/(kg s^2)".to_owned();
     check(&comm, &soft, &[gravity]);
 }

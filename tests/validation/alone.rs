@@ -12,6 +12,7 @@ const STEPS: u64 = 22;
 
 /// The ready inputs, as they are.
 const INPUTS: &[&str] = &[
+    "asteroids",
     "bar-impact",
     "block-impact",
     "blunt-on-weldox",
