@@ -250,7 +250,7 @@ fn a_quarter_is_attracted_as_the_whole() {
     );
     let (w, q) = (&whole.particles, &quarter.particles);
     assert_eq!(w.owned(), 4 * q.owned());
-    let place = |x: &[f64; 3]| x.map(|x| (x * 1e-1).round() as i64);
+    let place = |x: &[f64; 3]| x.map(|x| format!("{x:.0}"));
     let of: std::collections::BTreeMap<_, _> =
         (0..w.owned()).map(|i| (place(&w.position[i]), i)).collect();
     let (mut error, mut all, mut depth) = (0.0, 0.0, 0.0_f64);

@@ -171,7 +171,7 @@ impl StepSums {
     fn gather(&mut self, booked: &mut Booked, joint: &mut Joint) {
         self.uncorrected = booked.uncorrected;
         gather_limbs(self.exact(booked), &mut joint.sums);
-        let contact = &mut booked.contact;
+        let contact = &mut *booked.contact;
         let news = self.meetings.news(&contact.sums.pairs);
         joint.sums.extend([
             self.uncorrected,
@@ -191,7 +191,7 @@ impl StepSums {
     /// Takes what the ranks have joined. Collective where bodies have met for the first time.
     fn scatter(&mut self, comm: &Comm, booked: &mut Booked, joint: &Joint) {
         let rest = scatter_limbs(self.exact(booked), &joint.sums);
-        let contact = &mut booked.contact;
+        let contact = &mut *booked.contact;
         let (counts, rest) = rest.split_at(4);
         [self.uncorrected, self.crossings] = [counts[0], counts[1]];
         contact.sums.interpenetrated = counts[2];

@@ -1,5 +1,5 @@
-//! Self-gravity of all particles: a tree of quadrupoles (Barnes & Hut 1986, Nature 324, 446; Hernquist 1987, ApJS 64, 715)
-//! whose bits do not depend on ranks and threads.
+//! Self-gravity of all particles: a tree of quadrupoles whose bits do not depend on ranks and threads (Barnes & Hut 1986,
+//! Nature 324, 446; Hernquist 1987, Astrophysical Journal Supplement 64, 715).
 //!
 //! Cells are those of a cube around all particles. Which of them counts as one body for a particle follows from the cell that
 //! the particle lies in, so from places alone. Their moments are sums of whole numbers.

@@ -167,7 +167,7 @@ struct Part<'a> {
     poles: &'a mut [Pole],
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
     fn split(self, first: usize) -> (Self, Self) {
         let (cells, more_cells) = self.cells.split_at_mut(first);
         let (moments, more_moments) = self.moments.split_at_mut(first);
