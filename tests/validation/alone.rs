@@ -12,7 +12,6 @@ const STEPS: u64 = 22;
 
 /// The ready inputs, as they are.
 const INPUTS: &[&str] = &[
-    "asteroids",
     "bar-impact",
     "block-impact",
     "blunt-on-weldox",
@@ -30,6 +29,7 @@ const INPUTS: &[&str] = &[
     "noh",
     "oblique-30",
     "ogive-on-weldox",
+    "protoplanets",
     "punch",
     "quarter-impact",
     "raindrop",

@@ -12,7 +12,7 @@ use model::Case;
 const UNEQUAL: [f64; 2] = [1.1, 1.5];
 
 /// Work of self-gravity on a particle, and on each of its images, over that of all else: 1.8 among 4,000 particles, 3.9 among
-/// 33,000 (`inputs/asteroids`).
+/// 33,000 (`inputs/protoplanets`).
 const ATTRACTED: f64 = 3.0;
 
 /// Prediction of a run from a time on.
