@@ -153,6 +153,7 @@ q  | inputs/contact-lab/seam.toml | contact.pair=[{bodies=["left","right"],frict
    | inputs/contact-lab/seam.toml | body.above.lattice=rings body.left.lattice={kind="hexagonal",angle="20deg"}
    | inputs/contact-lab/case.toml | body.above.spacing=0.15mm gravity=[0,"-1e9m/s^2"] sph.form=normalised
    | inputs/quarter-impact | spacing=0.06mm symmetry=[]
+q  | inputs/quarter-impact | spacing=0.06mm self_gravity.constant=1e7m^3/(kg*s^2)
    | inputs/taylor-bar | spacing=0.8mm plane.anvil.friction=0.2 plane.anvil.damping=0.1
 q  | inputs/hertz-disc | spacing=0.5mm plane.plate.friction={static=0.4,kinetic=0.3} plane.plate.damping=0.2 run.max_steps=100
    | inputs/punch | surface.punch.friction=0.3 surface.die.damping=0.3 sph.form=normalised run.max_steps=60

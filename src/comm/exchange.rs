@@ -77,6 +77,12 @@ pub struct Peer {
 }
 
 impl Peer {
+    /// Its rank.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        usize::try_from(self.rank).unwrap_or(0)
+    }
+
     /// The message to it, to be filled.
     pub fn outgoing(&mut self) -> &mut Vec<u8> {
         &mut self.send
@@ -140,7 +146,7 @@ impl Exchange {
     /// Rank of the k-th peer.
     #[must_use]
     pub fn rank(&self, k: usize) -> usize {
-        usize::try_from(self.peers[k].rank).unwrap_or(0)
+        self.peers[k].rank()
     }
 
     /// The message to the k-th peer, to be filled.

@@ -4,6 +4,7 @@ pub mod contact;
 pub mod diagnose;
 pub mod domain;
 pub mod fragments;
+pub mod gravity;
 pub mod loads;
 pub mod measure;
 pub mod sph;

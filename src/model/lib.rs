@@ -50,7 +50,7 @@ pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
-pub use load::{Detonator, Loads, PressureLoad, Relaxation, VelocityLoad};
+pub use load::{Detonator, Loads, PressureLoad, Relaxation, SelfGravity, VelocityLoad};
 pub use loading::{Column, ColumnOf, Loading};
 pub use measure::{
     Bar, Debris, FrontLine, Measure, MeasureKind, MeasureOptions, Slab, Zone, ZonePlace,

@@ -8,6 +8,8 @@ use material::{Eos, UNLIT};
 pub struct Loads {
     /// Acceleration of every particle that is no part of a rigid body (m/s²).
     pub gravity: [f64; 3],
+    /// Attraction of all particles by each other, if there is any.
+    pub self_gravity: Option<SelfGravity>,
     /// Velocities prescribed to regions of bodies. Where several hold, the last one does.
     pub velocities: Vec<VelocityLoad>,
     /// Absorbing zones, at most one of each body.
@@ -49,6 +51,15 @@ impl Relaxation {
     pub const NAME: &'static str = "relaxation";
 }
 
+/// Attraction of all particles by each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SelfGravity {
+    /// Constant of gravitation (m³/(kg s²)).
+    pub constant: f64,
+    /// Side of a cell that counts as one body over the distance of its middle, at most.
+    pub opening_angle: f64,
+}
+
 /// A point from which a detonation runs through explosives, straight and at their own speeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detonator {
@@ -70,10 +81,16 @@ impl Loads {
         self.surfaces.iter().any(|s| s.resistance.is_any())
     }
 
-    /// `true` if there is gravity.
+    /// `true` if there is gravity from outside.
     #[must_use]
     pub fn has_gravity(&self) -> bool {
         self.gravity != [0.0; 3]
+    }
+
+    /// `true` if gravity moves all that is free, from outside or by itself.
+    #[must_use]
+    pub fn moves_all(&self) -> bool {
+        self.has_gravity() || self.self_gravity.is_some()
     }
 }
 

@@ -81,7 +81,7 @@ impl NumericalLimits {
     }
 
     /// Speeds that a case itself names, added up (m/s): of bodies, loads and surfaces, of a fall to
-    /// the end, of sound, and of what the initial energy may drive.
+    /// the end and onto all bodies in one, of sound, and of what the initial energy may drive.
     #[must_use]
     pub fn natural_speed(case: &Case) -> f64 {
         let largest = |speeds: &mut dyn Iterator<Item = f64>| speeds.fold(0.0, f64::max);
@@ -106,6 +106,20 @@ impl NumericalLimits {
             let layer = case.initial_density(body) * body.lattice.spacing;
             load.pressure.largest_speed() / layer * case.run.end_time
         }));
-        driven + moving + sound + hot + pressed + gravity * case.run.end_time
+        driven + moving + sound + hot + pressed + gravity * case.run.end_time + escape_speed(case)
     }
+}
+
+/// Escape speed (m/s) of a ball of all bodies with the density of the densest, zero without self-gravity.
+fn escape_speed(case: &Case) -> f64 {
+    let constant = case.loads.self_gravity.map_or(0.0, |own| own.constant);
+    if constant == 0.0 {
+        return 0.0;
+    }
+    let bodies = || 0..case.bodies.len();
+    let mass = |b: usize| case.density_of(b) * case.bodies[b].shape.volume(case.dimension);
+    let mass: f64 = bodies().map(mass).sum();
+    let density = bodies().map(|b| case.density_of(b)).fold(0.0, f64::max);
+    let radius = libm::cbrt(mass / (4.0 / 3.0 * std::f64::consts::PI * density));
+    (2.0 * constant * mass / radius).sqrt()
 }

@@ -190,6 +190,8 @@ macro_rules! owners {
                 const EXPLOSIVE = 1 << 28;
                 /// Pressures on faces.
                 const PRESSURES = 1 << 29;
+                /// Self-gravity.
+                const SELF_GRAVITY = 1 << 30;
                 /// Materials that bulk as they break.
                 const BULKING = 1 << 31;
                 $(

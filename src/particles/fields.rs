@@ -166,6 +166,8 @@ particle_fields! {
     acceleration: Vector,                 "m/s^2",  State,    -,              OnDemand, -;
     /// Acceleration by contact.
     contact_acceleration: Vector,         "m/s^2",  State,    -,              OnDemand, CONTACT;
+    /// Acceleration by self-gravity.
+    gravity_acceleration: Vector,         "m/s^2",  State,    -,              OnDemand, SELF_GRAVITY;
     /// Rate of specific internal energy at the particle's velocity.
     d_specific_energy_dt: Scalar,         "W/kg",   State,    -,              OnDemand, -;
     /// Foreign volume fraction above the touching value at the start, which contact forgives.
@@ -220,6 +222,8 @@ particle_fields! {
     sound_speed: Scalar,                  "m/s",    Scratch,  -,              OnDemand, -;
     /// Speed of the linear artificial viscosity: that of sound, none where failed matter bears no pressure.
     viscous_speed: Scalar,                "m/s",    Scratch,  STRESS,         Never,    CONVENTIONAL | NORMALISED;
+    /// Potential of self-gravity.
+    gravity_potential: Scalar,            "J/kg",   Scratch,  -,              OnDemand, SELF_GRAVITY;
     /// Volume fraction of foreign bodies in the contact support.
     foreign_fraction: Scalar,             "",       Scratch,  CONTACT,        Default,  CONTACT;
     /// Foreign fraction above the touching value.

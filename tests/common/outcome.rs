@@ -6,7 +6,9 @@ use std::collections::BTreeMap;
 use comm::Comm;
 use engine::step::Simulation;
 use material::{AfterSpall, Spall};
-use model::{Case, ContactDirection, ContactMode, Overlap, Resistance, SmoothingLength, SphForm};
+use model::{
+    Case, ContactDirection, ContactMode, Overlap, Resistance, SelfGravity, SmoothingLength, SphForm,
+};
 use particles::{FieldInfo, HaloPhase, Life, rows as fields};
 
 use super::sphere_on_plate;
@@ -163,9 +165,19 @@ pub fn loaded_stress_points() -> Case {
     case
 }
 
+/// [`everything`] with so much self-gravity that all falls together.
+pub fn attracting() -> Case {
+    let mut case = everything();
+    case.loads.self_gravity = Some(SelfGravity {
+        constant: 1e7,
+        opening_angle: 0.5,
+    });
+    case
+}
+
 /// Without options of the SPH sums and with all, without loads and with all, in all forms,
 /// with friction.
-pub const CASES: [fn() -> Case; 10] = [
+pub const CASES: [fn() -> Case; 11] = [
     everything,
     every_option,
     loaded,
@@ -176,4 +188,5 @@ pub const CASES: [fn() -> Case; 10] = [
     loaded_normalised,
     stress_points,
     loaded_stress_points,
+    attracting,
 ];

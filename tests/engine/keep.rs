@@ -6,7 +6,8 @@ use crate::common::{SPACING, ball, case, make_elastic, planes, sphere_on_plate};
 use comm::Comm;
 use engine::step::StepError;
 use engine::step::measurements;
-use model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SphForm, Vec3};
+use model::{Axis, Case, ContactMode, Heat, Motion, Profile, Region, SelfGravity, SphForm, Vec3};
+use numerics::vector::norm;
 
 /// What is above and below some distances (spacings) from the origin.
 fn region(above: [f64; 3], below: [f64; 3]) -> Region {
@@ -63,6 +64,35 @@ fn all_that_leaves_is_booked_to_rounding() {
         assert!(turn < 1e-12 || form != SphForm::Corrected);
         assert!(state.removed.is_empty());
     }
+}
+
+/// What leaves takes the energy along that ties it to all others, and momentum is booked with the error of the tree.
+#[test]
+fn what_leaves_takes_its_share_of_self_gravity() {
+    let mut case = bursting(SphForm::Corrected);
+    let before = start(case.clone());
+    let radius = (before.particles.position.iter()).fold(0.0, |most: f64, x| most.max(x[1]));
+    let totals = before.state.totals;
+    case.loads.self_gravity = Some(SelfGravity {
+        constant: 0.2 * totals.internal_energy * radius / (totals.mass * totals.mass),
+        opening_angle: 0.5,
+    });
+    let mut simulation = start(case);
+    advance(&mut simulation, 400);
+    let state = &simulation.state;
+    let (gone, worst) = (&state.departed[0], &state.worst);
+    let momentum = worst.momentum_error.into_iter().fold(0.0, f64::max);
+    let turn = worst.angular_momentum_error.into_iter().fold(0.0, f64::max);
+    let tied = state.departed_self_gravity_energy / state.initial.self_gravity_energy;
+    let drift = norm(&state.tree_impulse) / state.most_momentum;
+    eprintln!(
+        "{} left with {tied:.2} of the energy of self-gravity, energy {:.1e}, momentum {momentum:.1e}, angular {turn:.1e}, \
+         by the tree {drift:.1e}",
+        gone.particles, worst.energy_error
+    );
+    assert!(gone.particles > 40 && tied > 0.01);
+    assert!(worst.energy_error < 1e-3 && momentum < 1e-12 && turn < 1e-12);
+    assert!(0.0 < drift && drift < 1e-3);
 }
 
 /// What flies without stress goes on as it did to the last bit while one layer after the other leaves.

@@ -134,21 +134,35 @@ fn check_all() {
     let comm = Comm::solo();
     // The pool of threads is there before anything is counted.
     rayon::join(|| (), || ());
-    check(&comm, &[]);
+    check(&comm, CASE, &[]);
     let options = [
         "artificial_stress=0.3",
         "balsara=true",
         "conduction=1",
         "xsph=0.5",
     ];
-    check(&comm, &options.map(|option| format!("sph.{option}")));
+    check(&comm, CASE, &options.map(|option| format!("sph.{option}")));
     let contact = ["self_contact={folds=8}", "friction=0.3"];
-    check(&comm, &contact.map(|option| format!("contact.{option}")));
+    check(
+        &comm,
+        CASE,
+        &contact.map(|option| format!("contact.{option}")),
+    );
+    // Nothing that is rigid or has no end attracts.
+    let without = |text: &str, begin: &str, end: &str| {
+        let (before, rest) = text.split_once(begin).expect("its begin");
+        let (_, after) = rest.split_once(end).expect("its end");
+        format!("{before}{end}{after}")
+    };
+    let soft = without(CASE, "[[body]]\nname = \"rigid\"", "[[load]]");
+    let soft = without(&soft, "[[absorb]]", "[[plane]]");
+    let gravity = "self_gravity.constant=1 m^3/(kg s^2)".to_owned();
+    check(&comm, &soft, &[gravity]);
 }
 
-fn check(comm: &Comm, set: &[String]) {
+fn check(comm: &Comm, text: &str, set: &[String]) {
     let held_before = HELD.load(Ordering::Relaxed);
-    let case = input::parse("case", CASE, set).unwrap_or_else(|e| panic!("{e}"));
+    let case = input::parse("case", text, set).unwrap_or_else(|e| panic!("{e}"));
     let mut simulation = Simulation::start(case, comm).expect("it starts");
     // With the first search for folds of a body that a pressure acts on.
     for _ in 0..40 {

@@ -895,3 +895,50 @@ fn what_a_plane_cuts_does_not_move_across_it() {
         parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
     }
 }
+
+/// What has no mass, no end or no pairs of particles does not attract.
+#[test]
+fn self_gravity_refuses_what_does_not_attract() {
+    let text = GOOD.to_owned() + "\n[self_gravity]\n";
+    assert!(parse("case.toml", &text, &[]).is_ok());
+    let absorb = "absorb = [{ body = \"brick\", faces = [\"+z\"], depth = \"5 mm\" }]";
+    for (change, said) in [
+        (
+            "body.brick.rigid=true",
+            "`brick` has no mass that could attract",
+        ),
+        (absorb, "absorbing zones stand for matter without end"),
+        (
+            "sph.form=\"stress_points\"",
+            "stress points do not know self-gravity",
+        ),
+    ] {
+        let changes: Vec<&str> = if change.contains("stress_points") {
+            vec![
+                change,
+                "body.ball.lattice=\"cubic\"",
+                "body.brick.lattice=\"cubic\"",
+            ]
+        } else {
+            vec![change]
+        };
+        let found = message(&text, &changes);
+        assert!(found.contains(said), "{found}");
+    }
+    let flat = r#"
+dimension = 2
+spacing = "1 mm"
+run.end_time = "1 us"
+self_gravity = {}
+material.metal.library = "copper"
+[[body]]
+name = "disc"
+material = "metal"
+shape.sphere.radius = "5 mm"
+"#;
+    let found = message(flat, &[]);
+    assert!(
+        found.contains("bodies in 2 dimensions are infinite, and so is their gravity"),
+        "{found}"
+    );
+}

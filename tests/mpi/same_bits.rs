@@ -558,6 +558,33 @@ fn self_contact_on_any_ranks_and_through_a_restart() {
     assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
 }
 
+/// Halves of a sphere and a plate that attract each other, and their images, as strongly as the impact is fast.
+#[test]
+#[ignore = "slow"]
+fn self_gravity_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let mut case = half_the_time();
+    for set in [
+        "self_gravity.constant=\"1e7 m^3/(kg s^2)\"",
+        "output.fields=[\"gravity_acceleration\", \"gravity_potential\"]",
+    ] {
+        case.extend(["--set", set]);
+    }
+    let one = at("one");
+    run(1, 2, &case, &[], &one);
+    for ranks in [2, 5] {
+        let other = at(&format!("{ranks}"));
+        run(ranks, 1, &case, &[], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks"));
+    }
+    let stops = ["0.03us", "0.06us"];
+    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+    let history = std::fs::read_to_string(one.join("history.csv")).expect("the table");
+    let energy = column(&history, "self_gravity_energy");
+    let energy: f64 = energy.last().expect("a row").parse().expect("an energy");
+    assert!(energy < 0.0, "{energy}");
+}
+
 /// The columns of a table by name.
 fn column(table: &str, name: &str) -> Vec<String> {
     let mut rows = table.lines().filter(|line| !line.starts_with('#'));

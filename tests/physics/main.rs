@@ -32,6 +32,7 @@ mod friction;
 mod gas;
 mod gentle_start;
 mod granular;
+mod gravity;
 mod hit_bar;
 mod hole;
 mod options;

@@ -30,6 +30,7 @@ const INPUTS: &[&str] = &[
     "oblique-30",
     "ogive-on-concrete",
     "ogive-on-weldox",
+    "protoplanets",
     "punch",
     "quarter-impact",
     "raindrop",

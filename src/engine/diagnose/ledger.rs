@@ -132,6 +132,9 @@ pub struct Totals {
     pub contact_energy: f64,
     /// `−Σ m g·x` (J), zero at the origin.
     pub gravity_energy: f64,
+    /// `½ Σ m φ` of self-gravity (J).
+    #[serde(default)]
+    pub self_gravity_energy: f64,
     /// `Σ m` (kg).
     pub mass: f64,
     /// `Σ m v` (kg m/s).
@@ -153,10 +156,14 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Kinetic, internal, contact and gravity's energy together (J).
+    /// Kinetic, internal and contact energy and that of gravity from outside and by itself together (J).
     #[must_use]
     pub fn energy(&self) -> f64 {
-        self.kinetic_energy + self.internal_energy + self.contact_energy + self.gravity_energy
+        self.kinetic_energy
+            + self.internal_energy
+            + self.contact_energy
+            + self.gravity_energy
+            + self.self_gravity_energy
     }
 }
 
@@ -234,10 +241,19 @@ pub struct RunState {
     pub plane_force: [f64; 3],
     /// Its time integral, particles that crossed a plane included (N s).
     pub plane_impulse: [f64; 3],
+    /// Potential energy of self-gravity after the last step (J).
+    #[serde(default)]
+    pub self_gravity_energy: f64,
+    /// Force of self-gravity on the model now but for that of images (N), which only the error of its tree makes.
+    #[serde(default)]
+    pub tree_force: [f64; 3],
+    /// Its time integral (N s).
+    #[serde(default)]
+    pub tree_impulse: [f64; 3],
     /// Number of crossings of symmetry planes by particles so far.
     #[serde(default)]
     pub plane_crossings: i64,
-    /// Torque about the origin of symmetry planes, rigid surfaces and gravity now (N m).
+    /// Torque about the origin of symmetry planes, rigid surfaces, gravity and the error of its tree now (N m).
     #[serde(default)]
     pub outside_torque: [f64; 3],
     /// Angular impulse about the origin of these, of loads and of rigid bodies so far (N m s).
@@ -276,6 +292,9 @@ pub struct RunState {
     /// Contact energy that went with them (J).
     #[serde(default)]
     pub removed_contact_energy: f64,
+    /// Potential energy of self-gravity that went with them (J).
+    #[serde(default)]
+    pub removed_self_gravity_energy: f64,
     /// Sums that particles that left the box of interest took with them, by body; empty as long as
     /// the case has none.
     #[serde(default)]
@@ -283,6 +302,9 @@ pub struct RunState {
     /// Contact energy that went with them (J).
     #[serde(default)]
     pub departed_contact_energy: f64,
+    /// Potential energy of self-gravity that went with them (J).
+    #[serde(default)]
+    pub departed_self_gravity_energy: f64,
     /// Ids of the particles that carry gauges, in the order of these.
     #[serde(default)]
     pub gauge_carriers: Vec<u64>,
@@ -378,6 +400,7 @@ impl RunState {
         for a in 0..3 {
             self.plane_impulse[a] += 0.5 * dt * self.plane_force[a];
             self.angular_impulse[a] += 0.5 * dt * self.outside_torque[a];
+            self.tree_impulse[a] += 0.5 * dt * self.tree_force[a];
         }
         for pair in &mut self.pairs {
             for a in 0..3 {
@@ -449,7 +472,7 @@ pub struct Worst {
     pub energy_deviation: f64,
     /// |contact work + Φ − Φ(0)| (J).
     pub contact_deviation: f64,
-    /// |momentum − first value − impulses of planes, loads and gravity| (kg m/s), by component.
+    /// |momentum − first value − impulses of planes, loads, gravity and the error of its tree| (kg m/s), by component.
     pub momentum_deviation: [f64; 3],
     /// `energy_deviation` over the largest kinetic energy so far, or over the work put in if that is more.
     pub energy_error: f64,

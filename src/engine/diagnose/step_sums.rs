@@ -6,6 +6,7 @@ use super::ledger::{NearestPair, RunState};
 use super::meetings::Meetings;
 use crate::contact::{Closest, Contact, ContactTable, least, pair_key, pair_of};
 use crate::domain::Span;
+use crate::gravity::SelfGravity;
 use crate::loads::Loads;
 use comm::{Comm, Joint};
 use numerics::alone;
@@ -53,6 +54,7 @@ pub(crate) struct Votes {
 pub(crate) struct Booked<'a> {
     pub contact: &'a mut Contact,
     pub loads: &'a mut Loads,
+    pub self_gravity: Option<&'a mut SelfGravity>,
     pub mirrors: &'a Mirrors,
     /// Particles whose gradient has no correction.
     pub uncorrected: i64,
@@ -122,11 +124,14 @@ impl StepSums {
         }
     }
 
-    fn exact<'a>(
-        &'a mut self,
-        contact: &'a mut Contact,
-        loads: &'a mut Loads,
-    ) -> impl Iterator<Item = &'a mut ExactSum> {
+    fn exact<'a>(&'a mut self, booked: &'a mut Booked) -> impl Iterator<Item = &'a mut ExactSum> {
+        let Booked {
+            contact,
+            loads,
+            self_gravity,
+            ..
+        } = booked;
+        let of_gravity = self_gravity.iter_mut().flat_map(|gravity| gravity.exact());
         [&mut self.contact_work]
             .into_iter()
             .chain(&mut self.crossing_impulse)
@@ -138,6 +143,7 @@ impl StepSums {
             .chain([&mut contact.sums.energy])
             .chain(&mut contact.sums.plane_force)
             .chain(&mut contact.sums.outside_torque)
+            .chain(of_gravity)
     }
 
     /// Joins the sums of all ranks, if there are any, with the `votes` of this rank, which become those of
@@ -163,10 +169,10 @@ impl StepSums {
     /// Adds this rank's sums and extremes to what ranks join. Positive doubles order as their bits do, and
     /// a largest value is the smallest complement.
     fn gather(&mut self, booked: &mut Booked, joint: &mut Joint) {
-        let Booked { contact, loads, .. } = booked;
         self.uncorrected = booked.uncorrected;
+        gather_limbs(self.exact(booked), &mut joint.sums);
+        let contact = &mut *booked.contact;
         let news = self.meetings.news(&contact.sums.pairs);
-        gather_limbs(self.exact(contact, loads), &mut joint.sums);
         joint.sums.extend([
             self.uncorrected,
             self.crossings,
@@ -184,8 +190,8 @@ impl StepSums {
 
     /// Takes what the ranks have joined. Collective where bodies have met for the first time.
     fn scatter(&mut self, comm: &Comm, booked: &mut Booked, joint: &Joint) {
-        let Booked { contact, loads, .. } = booked;
-        let rest = scatter_limbs(self.exact(contact, loads), &joint.sums);
+        let rest = scatter_limbs(self.exact(booked), &joint.sums);
+        let contact = &mut *booked.contact;
         let (counts, rest) = rest.split_at(4);
         [self.uncorrected, self.crossings] = [counts[0], counts[1]];
         contact.sums.interpenetrated = counts[2];
@@ -229,6 +235,9 @@ impl StepSums {
                 + booked.loads.angular_impulse[a].value();
             self.crossing_angular_impulse[a] = ExactSum::default();
             booked.loads.angular_impulse[a] = ExactSum::default();
+        }
+        if let Some(gravity) = &booked.self_gravity {
+            gravity.book(state, dt);
         }
         state.plane_crossings += std::mem::take(&mut self.crossings);
         let along = std::array::from_fn(|a| booked.mirrors.plane(a).is_none());

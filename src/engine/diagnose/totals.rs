@@ -24,13 +24,13 @@ impl KeptTotals {
 }
 
 impl Totals {
-    /// Of the particles of all ranks that are no part of a rigid body, with the energy of contact
-    /// (J). Collective.
+    /// Of the particles of all ranks that are no part of a rigid body, with the energies of contact and of
+    /// self-gravity (J). Collective.
     pub(crate) fn of(
         active: Active,
         kept: &mut KeptTotals,
         loads: &Loads,
-        contact_energy: f64,
+        [contact_energy, self_gravity_energy]: [f64; 2],
         comm: &Comm,
     ) -> Self {
         let (particles, g) = (active.particles, &loads.gravity);
@@ -62,6 +62,7 @@ impl Totals {
             internal_energy: internal,
             contact_energy,
             gravity_energy: gravity,
+            self_gravity_energy,
             mass,
             momentum: [x, y, z],
             momentum_scale: scale,
@@ -157,16 +158,20 @@ fn reduce(comm: &Comm, sums: &mut [ExactSum]) {
 }
 
 impl RunState {
-    /// Energy that went with removed particles, that of contact included (J).
+    /// Energy that went with removed particles, those of contact and self-gravity included (J).
     #[must_use]
     pub fn removed_energy(&self) -> f64 {
-        self.removed.iter().map(Removed::energy).sum::<f64>() + self.removed_contact_energy
+        self.removed.iter().map(Removed::energy).sum::<f64>()
+            + self.removed_contact_energy
+            + self.removed_self_gravity_energy
     }
 
-    /// Energy that went with those that left the box of interest, that of contact included (J).
+    /// Energy that went with those that left the box of interest, those of contact and self-gravity included (J).
     #[must_use]
     pub fn departed_energy(&self) -> f64 {
-        self.departed.iter().map(Removed::energy).sum::<f64>() + self.departed_contact_energy
+        self.departed.iter().map(Removed::energy).sum::<f64>()
+            + self.departed_contact_energy
+            + self.departed_self_gravity_energy
     }
 
     /// Mass that left the box of interest (kg).
@@ -180,11 +185,23 @@ impl RunState {
         self.removed.iter().chain(&self.departed)
     }
 
-    /// The ledgers of what leaves for a reason, by body, and of its contact energy (J).
-    pub(crate) fn leaving(&mut self, why: Leave) -> (&mut Vec<Removed>, &mut f64) {
+    /// The ledgers of what leaves for a reason, by body, and of its energies of contact and self-gravity (J).
+    pub(crate) fn leaving(&mut self, why: Leave) -> (&mut Vec<Removed>, [&mut f64; 2]) {
         match why {
-            Leave::Failed => (&mut self.removed, &mut self.removed_contact_energy),
-            Leave::Departed => (&mut self.departed, &mut self.departed_contact_energy),
+            Leave::Failed => (
+                &mut self.removed,
+                [
+                    &mut self.removed_contact_energy,
+                    &mut self.removed_self_gravity_energy,
+                ],
+            ),
+            Leave::Departed => (
+                &mut self.departed,
+                [
+                    &mut self.departed_contact_energy,
+                    &mut self.departed_self_gravity_energy,
+                ],
+            ),
         }
     }
 
@@ -210,7 +227,10 @@ impl RunState {
         *most = most.map(|most| most.max(turning));
         let (work, impulse) = (self.load_work(), self.load_impulse());
         let fallen = totals.gravity_energy - self.initial.gravity_energy;
-        self.work_put_in = self.work_put_in.max(work.abs()).max(fallen.abs());
+        let drawn = totals.self_gravity_energy - self.initial.self_gravity_energy;
+        for work in [work, fallen, drawn] {
+            self.work_put_in = self.work_put_in.max(work.abs());
+        }
         let removed = self.removed_energy() + self.departed_energy();
         let worst = &mut self.worst;
         let error = totals.energy() + removed - self.initial.energy() - work;
@@ -226,7 +246,7 @@ impl RunState {
             let mass_time = totals.mass * self.time + removed(|r| r.mass_time);
             let falling = mass_time * gravity[a];
             let outside = impulse[a] + falling;
-            let error = gained[a] - self.plane_impulse[a] - outside;
+            let error = gained[a] - self.plane_impulse[a] - self.tree_impulse[a] - outside;
             let worst = &mut self.worst.momentum_deviation[a];
             *worst = worst.max(error.abs());
             for put in [impulse[a], falling] {

@@ -90,7 +90,9 @@ impl Held<'_> {
             let impulse = if prescribed.rigid {
                 -mass * (self.half * forces)
             } else {
-                mass * (change - self.half * (forces + loads.gravity[a]))
+                let own = particles.gravity_acceleration.get(i);
+                let gravity = own.map_or(loads.gravity[a], |own| loads.gravity[a] + own[a]);
+                mass * (change - self.half * (forces + gravity))
             };
             (Some(by), impulse, impulse * (0.5 * (v[a] + middle)))
         }))

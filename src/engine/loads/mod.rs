@@ -14,6 +14,7 @@ mod surface_motion;
 
 pub(crate) use absorption::Absorption;
 pub(crate) use pressures::Acting;
+pub(crate) use sums::sum_over;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
 use model::{self, Case, Motion};

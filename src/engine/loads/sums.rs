@@ -67,7 +67,7 @@ impl Loads {
 }
 
 /// Exact sums of the terms of those of the particles `0..owned` that have any.
-pub(super) fn sum_over<const N: usize>(
+pub(crate) fn sum_over<const N: usize>(
     owned: usize,
     terms: impl Fn(usize) -> Option<[f64; N]> + Sync,
 ) -> [ExactSum; N] {

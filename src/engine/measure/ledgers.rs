@@ -19,6 +19,9 @@ pub fn whole_state(state: &RunState, whole: Whole) -> RunState {
         totals: totals(&state.totals, whole),
         contact_energy: whole.sum(state.contact_energy),
         contact_work: whole.sum(state.contact_work),
+        self_gravity_energy: whole.sum(state.self_gravity_energy),
+        tree_force: whole.momentum(state.tree_force),
+        tree_impulse: whole.momentum(state.tree_impulse),
         plane_force: whole.momentum(state.plane_force),
         plane_impulse: whole.momentum(state.plane_impulse),
         angular_impulse: whole.angular_momentum(state.angular_impulse, gained),
@@ -35,6 +38,8 @@ pub fn whole_state(state: &RunState, whole: Whole) -> RunState {
             .map(|part| gone(part, whole))
             .collect(),
         departed_contact_energy: whole.sum(state.departed_contact_energy),
+        removed_self_gravity_energy: whole.sum(state.removed_self_gravity_energy),
+        departed_self_gravity_energy: whole.sum(state.departed_self_gravity_energy),
         passed: (state.passed.iter())
             .map(|part| passed(part, whole))
             .collect(),
@@ -53,6 +58,7 @@ fn totals(part: &Totals, whole: Whole) -> Totals {
         internal_energy: whole.sum(part.internal_energy),
         contact_energy: whole.sum(part.contact_energy),
         gravity_energy: whole.sum(part.gravity_energy),
+        self_gravity_energy: whole.sum(part.self_gravity_energy),
         mass: whole.sum(part.mass),
         momentum: whole.momentum(part.momentum),
         momentum_scale: whole.sum(part.momentum_scale),

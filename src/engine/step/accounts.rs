@@ -46,15 +46,16 @@ impl Accounts {
         self.sums.memory() + self.kept_totals.memory() + self.measures.memory()
     }
 
-    /// Sums over all particles, with the energy of contact (J). Collective.
-    pub fn totals(&mut self, comm: &Comm, inputs: TotalsInputs, contact_energy: f64) -> Totals {
+    /// Sums over all particles, with the energies of contact and self-gravity in the state. Collective.
+    pub fn totals(&mut self, comm: &Comm, inputs: TotalsInputs, state: &RunState) -> Totals {
         let TotalsInputs {
             case,
             active,
             loads,
         } = inputs;
         let kept = &mut self.kept_totals;
-        let mut totals = Totals::of(active, kept, loads, contact_energy, comm);
+        let energies = [state.contact_energy, state.self_gravity_energy];
+        let mut totals = Totals::of(active, kept, loads, energies, comm);
         if case.may_fail() {
             totals.add_failure(active, kept, loads, comm);
         }
@@ -66,7 +67,7 @@ impl Accounts {
     /// extremes since the last row. Collective.
     pub fn diagnose(&mut self, comm: &Comm, state: &mut RunState, inputs: TotalsInputs) {
         self.sums.join_extremes(comm, state);
-        let totals = self.totals(comm, inputs, state.contact_energy);
+        let totals = self.totals(comm, inputs, state);
         let turning = angular_momentum_scale(inputs.active.particles, inputs.loads, comm);
         state.book_totals(totals, turning, inputs.loads.gravity);
     }

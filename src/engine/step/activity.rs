@@ -130,7 +130,7 @@ impl Activity {
             is_enabled: loads.surfaces.is_empty()
                 && loads.velocities.is_empty()
                 && loads.pressures.is_empty()
-                && loads.gravity == [0.0; 3],
+                && !loads.moves_all(),
             parts: Vec::new(),
             links: KeptLinks::default(),
             resting: Vec::new(),

@@ -192,6 +192,8 @@ pub(super) struct CriteriaFields<'a> {
     pub position: &'a [[f64; 3]],
     pub smoothing_length: &'a [f64],
     pub acceleration: &'a [[f64; 3]],
+    /// Empty without self-gravity.
+    pub gravity_acceleration: &'a [[f64; 3]],
     pub contact_stiffness: &'a [f64],
     pub sound_speed: &'a [f64],
     pub approach_speed: &'a [f64],
@@ -212,6 +214,7 @@ macro_rules! criteria_fields {
             position: &$particles.position,
             smoothing_length: &$particles.smoothing_length,
             acceleration: &$particles.acceleration,
+            gravity_acceleration: &$particles.gravity_acceleration,
             contact_stiffness: &$particles.contact_stiffness,
             sound_speed: &$particles.sound_speed,
             approach_speed: &$particles.approach_speed,
@@ -331,7 +334,9 @@ impl<'a, F: SignalSpeed> Criteria<'a, F> {
     #[inline(always)]
     fn acceleration(&self, i: usize, contact: &[f64; 3]) -> [f64; 3] {
         let a = &self.fields.acceleration[i];
-        std::array::from_fn(|k| a[k] + self.gravity[k] + contact[k])
+        let other = std::array::from_fn(|k| a[k] + self.gravity[k] + contact[k]);
+        let own = self.fields.gravity_acceleration.get(i);
+        own.map_or(other, |own| std::array::from_fn(|k| other[k] + own[k]))
     }
 
     /// Sound and viscosity (Monaghan 1989) `C h / max(c + 0.6 (α c + β |μ|), |μ|)`, acceleration

@@ -14,6 +14,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let used = [
         (Owner::LOADS, driven),
         (Owner::PRESSURES, !case.loads.pressures.is_empty()),
+        (Owner::SELF_GRAVITY, case.loads.self_gravity.is_some()),
         (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),
         (Owner::SELF_CONTACT, case.self_contact.is_some()),
         (

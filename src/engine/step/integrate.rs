@@ -31,17 +31,26 @@ fn add_scaled(v: &[f64; 3], factor: f64, a: &[f64; 3]) -> [f64; 3] {
 
 /// A half kick.
 #[derive(Debug, Clone, Copy)]
-struct Kick {
+struct Kick<'a> {
     /// The whole step (s).
     dt: f64,
     gravity: [f64; 3],
+    /// Of each particle (m/s²); empty without self-gravity.
+    self_gravity: &'a [[f64; 3]],
 }
 
-impl Kick {
-    /// Acceleration (m/s²) by stress, contact and gravity.
+impl Kick<'_> {
+    /// Acceleration (m/s²) of particle `i` by stress, contact and gravity.
     #[inline(always)]
-    fn total(&self, stress: &[f64; 3], contact: &[f64; 3]) -> [f64; 3] {
-        add(stress, &add(contact, &self.gravity))
+    fn total(&self, i: usize, stress: &[f64; 3], contact: &[f64; 3]) -> [f64; 3] {
+        let outside = add(contact, &self.gravity);
+        add(
+            stress,
+            &self
+                .self_gravity
+                .get(i)
+                .map_or(outside, |own| add(&outside, own)),
+        )
     }
 }
 
@@ -112,6 +121,7 @@ pub(super) fn kick_and_drift(
     let kick = Kick {
         dt,
         gravity: loads.gravity,
+        self_gravity: &particles.gravity_acceleration,
     };
     let drifting = Drifting {
         velocity: &mut particles.velocity,
@@ -137,7 +147,7 @@ pub(super) fn kick_and_drift(
 impl Drifting<'_> {
     fn advance<D: Prescribe>(
         self,
-        kick: Kick,
+        kick: Kick<'_>,
         rates: &Rates,
         inactive: &Inactive,
         smoothing: &Smoothing,
@@ -164,7 +174,7 @@ impl Drifting<'_> {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &rates.acceleration[i];
-                        let mut total = kick.total(a, &contact);
+                        let mut total = kick.total(i, a, &contact);
                         let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
                         prescribed.accelerate(VelocityStage::Middle, &v[k], per_half, &mut total);
                         e[k] += half * (rates.heating[i] - 0.25 * dt * dot(a, &total));
@@ -216,6 +226,7 @@ pub(super) fn kick<F: SignalSpeed>(
     let kick = Kick {
         dt,
         gravity: loads.gravity,
+        self_gravity: &particles.gravity_acceleration,
     };
     let criteria = Criteria::<F>::new(criteria_fields!(particles), criteria);
     let predicted_velocity = &particles.predicted_velocity;
@@ -239,7 +250,7 @@ struct Kicking<'a> {
 impl Kicking<'_> {
     fn finish<D: Prescribe, F: SignalSpeed>(
         self,
-        kick: Kick,
+        kick: Kick<'_>,
         criteria: &Criteria<F>,
         inactive: &Inactive,
         predicted_velocity: &[[f64; 3]],
@@ -265,7 +276,7 @@ impl Kicking<'_> {
                         let i = chunk * GRAIN + k;
                         let (contact, prescribed) = outside(i);
                         let a = &fields.acceleration[i];
-                        let forces = kick.total(a, &contact);
+                        let forces = kick.total(i, a, &contact);
                         let mut total = forces;
                         prescribed.accelerate(VelocityStage::End, &v[k], per_half, &mut total);
                         let middle = v[k];

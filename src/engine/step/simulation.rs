@@ -18,6 +18,7 @@ use crate::diagnose::{
     Booked, Leave, LoadState, NumericalFailure, Passed, Reason, Removed, RunState, Votes, Worst,
 };
 use crate::domain::{Halo, InitialLayout, NestedSlabs, Partition};
+use crate::gravity::SelfGravity;
 use crate::loads::Loads;
 use crate::measure::Gauges;
 use crate::sph::{Side, Sph, Step, with_formulation};
@@ -47,6 +48,8 @@ pub struct Simulation {
     pub(super) contact: Contact,
     /// Prescribed velocities, absorbing zones, rigid surfaces and gravity.
     pub(super) loads: Loads,
+    /// Attraction of all particles by each other, if there is any.
+    pub(super) self_gravity: Option<SelfGravity>,
     /// Sums over particles, and measures.
     pub(super) accounts: Accounts,
     /// Particles that are taken out or frozen.
@@ -142,6 +145,7 @@ impl Simulation {
             search: Search::new(&case, table, layout),
             sph: Sph::new(&case, &contact.table.groups, layout),
             loads: Loads::new(&case),
+            self_gravity: SelfGravity::new(&case),
             accounts,
             contact,
             case,
@@ -184,7 +188,7 @@ impl Simulation {
             active: search.active(particles),
             loads,
         };
-        state.initial = accounts.totals(comm, inputs, state.contact_energy);
+        state.initial = accounts.totals(comm, inputs, state);
         state.angular_momentum_scale = Some(0.0);
         state.worst = Worst::default();
         accounts.diagnose(comm, state, inputs);
@@ -345,6 +349,7 @@ impl Simulation {
             sph,
             contact,
             loads,
+            self_gravity,
             ..
         } = self;
         let step = Step {
@@ -382,6 +387,10 @@ impl Simulation {
         let planes = sph.forces_of_mirrors();
         contact.sums.add_plane_forces(planes, &particles.position);
         timers.lap(Phase::ContactForces);
+        if let Some(gravity) = self_gravity {
+            gravity.act(comm, particles, halo.mirrors(), &mut contact.sums);
+            timers.lap(Phase::SelfGravity);
+        }
         if finds_folds(state.step) {
             sph.find_folds(particles, lists);
         }
@@ -456,16 +465,18 @@ impl Simulation {
             sph,
             contact,
             loads,
+            self_gravity,
             accounts: Accounts { sums, .. },
             ..
         } = self;
         let corrects = case.sph.form != SphForm::Conventional;
-        let outside = !halo.mirrors().is_empty() || loads.act();
+        let outside = !halo.mirrors().is_empty() || loads.act() || self_gravity.is_some();
         let sums_any = contact.table.is_active() || outside || corrects;
         let mut booked = Booked {
             uncorrected: sph.uncorrected(),
             contact,
             loads,
+            self_gravity: self_gravity.as_mut(),
             mirrors: halo.mirrors(),
         };
         let [work, load] = partition.count(comm, particles);
@@ -567,15 +578,18 @@ impl Simulation {
             particles.predicted_density[..owned].copy_from_slice(&particles.density[..owned]);
         }
         loads.prepare(case, state.time, state.time);
-        let (contact_energy, worst) = (state.contact_energy, state.worst);
+        let energies = [state.contact_energy, state.self_gravity_energy];
+        let worst = state.worst;
         self.find_neighbours(comm);
         self.sum(comm, 0.0);
         let candidate = self.kick(0.0);
         // The sums of a step of no length have no work in them. Its defect is taken with the energy that has
         // been lost, so the loss must be known first.
         let candidate = self.book_step(comm, 0.0, candidate);
-        let lost = contact_energy - self.state.contact_energy;
-        *self.state.leaving(why).1 += lost;
+        let left = [self.state.contact_energy, self.state.self_gravity_energy];
+        for (k, gone) in self.state.leaving(why).1.into_iter().enumerate() {
+            *gone += energies[k] - left[k];
+        }
         self.state.worst = worst;
         self.state.book_defect();
         self.choose_step(comm, candidate)?;
@@ -649,7 +663,10 @@ impl Simulation {
     /// Messages and bytes that this rank has sent.
     #[must_use]
     pub fn traffic(&self) -> (u64, u64) {
-        self.space.traffic()
+        let (messages, bytes) = self.space.traffic();
+        let gravity = self.self_gravity.as_ref().map(SelfGravity::traffic);
+        let gravity = gravity.unwrap_or_default();
+        (messages + gravity.messages, bytes + gravity.bytes)
     }
 
     /// The contact table.
@@ -683,6 +700,7 @@ impl Simulation {
             + labels.memory()
             + self.removal.memory()
             + self.loads.memory()
+            + self.self_gravity.as_ref().map_or(0, SelfGravity::memory)
             + self.accounts.memory()
             + self.step_control.memory();
         [

@@ -38,6 +38,8 @@ phases! {
     Momentum = "momentum_and_energy",
     /// Contact forces.
     ContactForces = "contact_forces",
+    /// Self-gravity.
+    SelfGravity = "self_gravity",
     /// Time-step candidates and conserved sums.
     TimeStep = "vote_and_sums",
     /// Histories, snapshots and checkpoints.

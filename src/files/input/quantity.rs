@@ -78,6 +78,8 @@ kinds! {
     Velocity = [1, 0, -1, 0, 0], "a velocity", "7 km/s", 299_792_458.0 "faster than light";
     /// Metres in a second squared.
     Acceleration = [1, 0, -2, 0, 0], "an acceleration", "9.81 m/s^2", 1e13 "more than the gravity of a neutron star";
+    /// Cubic metres in a kilogram and a second squared.
+    Gravitation = [3, -1, -2, 0, 0], "a constant of gravitation", "6.6743e-11 m^3/(kg s^2)", 1e12 "that of another world: here it is 6.6743e-11 m^3/(kg s^2)";
     /// Kilograms in a cubic metre.
     Density = [-3, 1, 0, 0, 0], "a density", "2785 kg/m^3", 1e6 "denser than anything on Earth: osmium has 22600 kg/m^3";
     /// Kilograms in a square metre.

@@ -9,8 +9,8 @@ use toml::Spanned;
 use super::forms::{Named, OneOrMany};
 use super::profile::ProfileParams;
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Length, Placed, Pressure, Rate, SpecificEnergy, Strain,
-    Temperature, Time, Velocity,
+    Acceleration, Angle, Density, Extent, Gravitation, Length, Placed, Pressure, Rate,
+    SpecificEnergy, Strain, Temperature, Time, Velocity,
 };
 use super::source::Diagnostic;
 use model::{Axis, BodyForm, SphForm, TermOptions, pair_terms};
@@ -80,6 +80,8 @@ tables! {
         symmetry: Vec<SymmetryParams>;
         /// Acceleration of gravity.
         gravity: Option<Spanned<Vec<Placed<Acceleration>>>> => "none";
+        /// Attraction of all particles by each other.
+        self_gravity: Option<Spanned<SelfGravityParams>> => "none";
         /// Prescribed velocities.
         #[serde(default)]
         load: Vec<Spanned<LoadParams>>;
@@ -317,6 +319,14 @@ optional_tables! {
         contact: Option<Spanned<f64>>, UpToOne => "1 in three dimensions, 0.8 in fewer, and with a body in the total form";
         /// Upper bound.
         max: Option<Placed<Time>>, Positive => "none but what materials demand";
+    }
+
+    /// `[self_gravity]`
+    SelfGravityParams {
+        /// Constant of gravitation.
+        constant: Option<Placed<Gravitation>> = "6.6743e-11 m^3/(kg s^2)", Positive;
+        /// Largest side of a cell that attracts as one body, over the distance of its middle.
+        opening_angle: Option<Spanned<f64>> = 0.5, Within(0.1, 1.0);
     }
 
     /// `[domain]`

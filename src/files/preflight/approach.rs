@@ -94,7 +94,7 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
     let driven = case.loads.velocities.iter().any(|load| load.body == body);
     let motion = case.bodies[body].rigid.as_ref();
     let table = motion.is_some_and(|motion| motion.times.len() > 1);
-    let falls = motion.is_none() && case.loads.gravity != [0.0; 3];
+    let falls = motion.is_none() && case.loads.moves_all();
     let spreads = case.bodies[body].speed_spread() > 0.0;
     !(driven || table || falls || spreads)
 }

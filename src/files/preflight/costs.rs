@@ -3,6 +3,7 @@
 use super::waves::{RESTING, can_rest};
 use engine::contact::ContactTable;
 use engine::domain::MOST_UNEVEN;
+use engine::gravity;
 use engine::step::bytes_of_options;
 use model::Case;
 
@@ -55,7 +56,9 @@ impl Costs {
     #[allow(clippy::cast_precision_loss, reason = "an estimate")]
     pub fn of_case(case: &Case) -> Self {
         let contact = ContactTable::of_kinds(case).is_active();
-        let options = bytes_of_options(case).map(|bytes| SPARE * bytes as f64);
+        let trees = case.loads.self_gravity.map_or([0; 2], |_| gravity::BYTES);
+        let options = bytes_of_options(case);
+        let options = [0, 1].map(|k| SPARE * (options[k] + trees[k]) as f64);
         let meshes = case.meshes().into_iter().map(|(_, mesh)| mesh.memory());
         // Each rank reads all of a file.
         let clouds = case.bodies.iter().filter_map(|body| body.cloud());

@@ -214,7 +214,7 @@ pub(super) fn can_rest(case: &Case) -> bool {
 /// By body, its rest; `None` if nothing rests, or for an unknown time.
 fn waiting(case: &Case) -> Option<Vec<Option<Still>>> {
     let known = matches!(case.sph.form, SphForm::Conventional | SphForm::Corrected)
-        && case.loads.gravity == [0.0; 3]
+        && !case.loads.moves_all()
         && case.loads.velocities.is_empty()
         && case.loads.pressures.is_empty();
     known.then_some(())?;

@@ -86,7 +86,7 @@ macro_rules! tables {
 
 tables! {
     /// A row of the history. In other forms than the conventional the number of uncorrected gradients
-    /// follows, then the failed mass where a material may fail, and the departed mass and energy where
+    /// follows, then the failed mass where a material may fail, self-gravity where there is any, and the departed mass and energy where
     /// there is a box of interest.
     HISTORY, history(state: &'a RunState) {
         "step", "", state.step;
@@ -113,6 +113,12 @@ tables! {
     FAILURE, failure(state: &'a RunState) {
         "failed_mass", "kg", state.totals.failed_mass;
         "failure_energy", "J", state.totals.failure_energy;
+    }
+
+    /// Cells of the history with self-gravity.
+    SELF_GRAVITY, self_gravity(state: &'a RunState) {
+        "self_gravity_energy", "J", state.self_gravity_energy;
+        "tree_impulse_*", "N s", state.tree_impulse;
     }
 
     /// Cells of the history where there are absorbing zones.

@@ -88,6 +88,7 @@ pub fn summary(comm: &Comm, simulation: &Simulation, clock: &Clock) -> serde_jso
         "absorbing_zones": absorbing_zones(&simulation.case, state),
         "contact_limited_steps": worst.contact_limited_steps,
     });
+    summary["self_gravity"] = json!(self_gravity(&simulation.case, state));
     summary["computed_share"] = json!(1.0 / f64::from(whole.copies()));
     summary["particles_across"] = json!(particles_across(comm, &simulation.case));
     summary["left_total_form"] = json!(left_total_form(simulation));
@@ -149,6 +150,13 @@ fn absorbing_zones(case: &Case, state: &RunState) -> Option<serde_json::Value> {
     let taken = -zones.iter().map(|zone| zone.work).sum::<f64>();
     let yielded = state.totals.yielded_mass;
     (!zones.is_empty()).then(|| json!({ "absorbed_energy": taken, "yielded_mass": yielded }))
+}
+
+/// Potential energy of self-gravity (J), and the momentum that the error of its tree has added (N s), if there is any.
+fn self_gravity(case: &Case, state: &RunState) -> Option<serde_json::Value> {
+    let energy = state.self_gravity_energy;
+    (case.loads.self_gravity)
+        .map(|_| json!({ "energy": energy, "tree_impulse": state.tree_impulse }))
 }
 
 /// The nearest two particles of two bodies so far, and those bodies.

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::columns::{
     ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
-    PERFORMANCE, RANKS, REMOVED, WITNESS, absorbed, body_row, columns, contact, crossing_row,
-    departed, departure, failure, gauge_row, history, load_row, performance, rank_row, removed,
-    witness_row,
+    PERFORMANCE, RANKS, REMOVED, SELF_GRAVITY, WITNESS, absorbed, body_row, columns, contact,
+    crossing_row, departed, departure, failure, gauge_row, history, load_row, performance,
+    rank_row, removed, self_gravity, witness_row,
 };
 use super::load::Load;
 use crate::output::gauge_records::{self, GaugeRecords};
@@ -49,6 +49,9 @@ fn of_history(case: &Case, departs: bool) -> Vec<Column> {
     }
     if case.may_fail() {
         all.extend(columns(FAILURE));
+    }
+    if case.loads.self_gravity.is_some() {
+        all.extend(columns(SELF_GRAVITY));
     }
     if !case.loads.absorbers.is_empty() {
         all.extend(columns(ABSORBED));
@@ -263,6 +266,9 @@ impl Tables {
         }
         if case.may_fail() {
             row.extend(failure(state));
+        }
+        if case.loads.self_gravity.is_some() {
+            row.extend(self_gravity(state));
         }
         if !case.loads.absorbers.is_empty() {
             row.extend(absorbed(state));

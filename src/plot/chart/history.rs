@@ -29,11 +29,12 @@ pub enum History {
 }
 
 /// Columns that are drawn of energies, their names in the legend and their colours.
-const ENERGIES: [(&str, &str, Rgb); 4] = [
+const ENERGIES: [(&str, &str, Rgb); 5] = [
     ("total_energy", "total", [40, 40, 40]),
     ("kinetic_energy", "kinetic", [0, 114, 178]),
     ("internal_energy", "internal", [213, 94, 0]),
     ("contact_energy", "contact", [0, 158, 115]),
+    ("self_gravity_energy", "self-gravity", [204, 121, 167]),
 ];
 
 impl History {
@@ -161,7 +162,7 @@ impl History {
         let mut lines = Vec::new();
         let unit = match self {
             Self::Energies => {
-                for (column, name, colour) in ENERGIES {
+                for (column, name, colour) in ENERGIES.into_iter().filter(|row| table.has(row.0)) {
                     lines.push((name.to_owned(), colour, against(table.column(column)?)));
                 }
                 "total_energy"

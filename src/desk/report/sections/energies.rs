@@ -6,11 +6,12 @@ use crate::report::run_files::{Rows, Run};
 use plot::History;
 
 /// Columns of the history that are listed at the start and at the end.
-const COLUMNS: [&str; 6] = [
+const COLUMNS: [&str; 7] = [
     "kinetic_energy",
     "internal_energy",
     "contact_energy",
     "gravity_energy",
+    "self_gravity_energy",
     "load_work",
     "total_energy",
 ];

@@ -66,6 +66,7 @@ impl Reader<'_> {
         self.check_starts(params, &surfaces)?;
         Ok(Loads {
             gravity: self.gravity(params.gravity.as_ref())?,
+            self_gravity: None,
             velocities: velocities?,
             absorbers: Vec::new(),
             surfaces,

@@ -31,6 +31,7 @@ mod porosity;
 mod pressures;
 mod region;
 mod relaxation;
+mod self_gravity;
 mod shapes;
 mod solids;
 mod strength;
@@ -122,6 +123,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
 /// Reads what asks a case, and checks what does not go together in it.
 fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     loading::resolve(case, &params.body)?;
+    case.loads.self_gravity = self_gravity::self_gravity(case, params)?;
     initial::resolve(case, &params.body)?;
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
