@@ -53,7 +53,7 @@ fn a_summary_has_the_figures_of_the_run() {
         .values()
         .map(|seconds| seconds.as_f64().unwrap())
         .sum();
-    assert_eq!(phases.len(), 12);
+    assert_eq!(phases.len(), 13);
     assert!(
         0.0 < stepping && stepping < number("wall_seconds"),
         "{summary:#}"
