@@ -3,11 +3,13 @@
 use super::cube::{Bounds, Cube};
 use super::moments::Pole;
 use super::tree::{Point, Tree};
-use numerics::dispatch::Vectorised;
+use numerics::dispatch::{Vectorised, instructions};
 use numerics::lanes::{F64x8, LANES, Lanes};
 
 /// Eights of targets that a walk serves.
 const EIGHTS: usize = 8;
+/// Cells of a kind that act together.
+const FOUND: usize = 128;
 /// Targets that a walk serves at most.
 pub(super) const TARGETS: usize = EIGHTS * LANES;
 
@@ -74,7 +76,7 @@ impl Targets {
     /// Adds what a particle exerts.
     #[inline(always)]
     fn add_point<V: Lanes>(&mut self, point: &Point) {
-        let source = point.position.map(V::splat);
+        let source = splat(&point.position);
         let mass = V::splat(point.mass);
         for n in 0..self.count {
             let (d, r2) = apart::<V>(&source, &self.position[n]);
@@ -108,9 +110,9 @@ impl Targets {
     /// `φ = −M/r − 3/2 d·S d/r⁵ + 1/2 tr S/r³`, with `d` from the target to the centre of mass.
     #[inline(always)]
     fn add_pole<V: Lanes>(&mut self, pole: &Pole) {
-        let source = pole.centre.map(V::splat);
+        let source = splat(&pole.centre);
         let mass = V::splat(pole.mass);
-        let [xx, yy, zz, xy, xz, yz] = pole.second.map(V::splat);
+        let [xx, yy, zz, xy, xz, yz] = splat(&pole.second);
         let trace = pole.second[0] + pole.second[1] + pole.second[2];
         let (half, rest) = (V::splat(0.5 * trace), V::splat(1.5 * trace));
         for n in 0..self.count {
@@ -119,9 +121,12 @@ impl Targets {
             let square = inverse.mul(inverse);
             let cube = square.mul(inverse);
             let fifth = cube.mul(square);
-            let row = |a: V, b: V, c: V| a.mul(d[0]).add(b.mul(d[1])).add(c.mul(d[2]));
-            let s = [row(xx, xy, xz), row(xy, yy, yz), row(xz, yz, zz)];
-            let quadratic = s[0].mul(d[0]).add(s[1].mul(d[1])).add(s[2].mul(d[2]));
+            let s = [
+                dot([xx, xy, xz], &d),
+                dot([xy, yy, yz], &d),
+                dot([xz, yz, zz], &d),
+            ];
+            let quadratic = dot(s, &d);
             let bend = V::splat(7.5).mul(quadratic).mul(square).sub(rest);
             let along = mass.mul(cube).add(bend.mul(fifth));
             let turn = V::splat(3.0).mul(fifth);
@@ -137,6 +142,21 @@ impl Targets {
             pull[3] = V::load(&pull[3]).sub(depth).store();
         }
     }
+}
+
+/// Each number in all lanes.
+#[inline(always)]
+fn splat<V: Lanes, const N: usize>(values: &[f64; N]) -> [V; N] {
+    let mut all = [V::splat(0.0); N];
+    for k in 0..N {
+        all[k] = V::splat(values[k]);
+    }
+    all
+}
+
+#[inline(always)]
+fn dot<V: Lanes>(a: [V; 3], b: &[V; 3]) -> V {
+    a[0].mul(b[0]).add(a[1].mul(b[1])).add(a[2].mul(b[2]))
 }
 
 /// From targets to a source (m), and the square of the distance (m²).
@@ -167,27 +187,86 @@ pub(super) struct OnCell<'a, F> {
     pub pulls: &'a mut [Pull],
 }
 
-impl<F: Fn(&[f64; 3]) -> [f64; 3]> Vectorised for OnCell<'_, F> {
+/// Cells that a walk has found, up to a number.
+struct Found {
+    cells: [u32; FOUND],
+    count: usize,
+}
+
+impl Found {
+    const NONE: Self = Self {
+        cells: [0; FOUND],
+        count: 0,
+    };
+
+    /// True if it is full with this cell.
+    fn add(&mut self, cell: u32) -> bool {
+        self.cells[self.count] = cell;
+        self.count += 1;
+        self.count == FOUND
+    }
+}
+
+/// Cells that act on targets: as one body, or by the particles that lie in them.
+struct Acting<'a> {
+    tree: &'a Tree,
+    targets: &'a mut Targets,
+    found: &'a mut Found,
+    as_one: bool,
+}
+
+impl Vectorised for Acting<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<V: Lanes>(self) {
+        for &at in &self.found.cells[..self.found.count] {
+            let at = at as usize;
+            if self.as_one {
+                self.targets.add_pole::<V>(&self.tree.poles[at]);
+            } else {
+                let [first, end] = self.tree.cells[at].points;
+                for point in &self.tree.points[first as usize..end as usize] {
+                    self.targets.add_point::<V>(point);
+                }
+            }
+        }
+        self.found.count = 0;
+    }
+}
+
+impl<F: Fn(&[f64; 3]) -> [f64; 3]> OnCell<'_, F> {
+    /// Walks the tree, and lets what it finds act, some cells at a time.
+    pub fn run(self) {
         let Self { tree, points, .. } = self;
         let mut targets = Targets::new(points, &self.image);
         let target = (&self.bounds, self.side);
+        let mut found = [Found::NONE, Found::NONE];
+        let mut act = |found: &mut Found, as_one: bool| {
+            instructions().run(Acting {
+                tree,
+                targets: &mut targets,
+                found,
+                as_one,
+            });
+        };
         tree.walk(
             |bounds, side| self.cube.is_apart((bounds, side), target),
-            |at, is_closed| {
-                if is_closed {
-                    targets.add_pole::<V>(&tree.poles[at]);
-                } else {
-                    let [first, end] = tree.cells[at].points;
-                    for point in &tree.points[first as usize..end as usize] {
-                        targets.add_point::<V>(point);
-                    }
+            |at, as_one| {
+                let [first, end] = tree.cells[at].points;
+                if !as_one && first == end {
+                    return;
+                }
+                let of_kind = &mut found[usize::from(as_one)];
+                #[allow(clippy::cast_possible_truncation)] // cells are counted by u32
+                if of_kind.add(at as u32) {
+                    act(of_kind, as_one);
                 }
             },
         );
+        for (of_kind, as_one) in found.iter_mut().zip([false, true]) {
+            act(of_kind, as_one);
+        }
         for (k, (pull, point)) in self.pulls.iter_mut().zip(points).enumerate() {
             let received = &targets.pull[k / LANES];
             for a in 0..4 {

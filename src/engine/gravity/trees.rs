@@ -8,7 +8,6 @@ use super::pull::{OnCell, Pull, TARGETS};
 use super::tree::{Bin, Point, Tree};
 use comm::{Comm, Exchange, Traffic};
 use model::SelfGravity;
-use numerics::dispatch::instructions;
 use particles::{GRAIN, MirrorMask, Mirrors};
 
 /// Trees, with their memory.
@@ -105,7 +104,7 @@ fn on_cell(
     for mask in mirrors.masks() {
         // Images of the particles feel the particles as these feel their images.
         let mut on_image = [[0.0; 4]; TARGETS];
-        instructions().run(OnCell {
+        let on_cell = OnCell {
             cube,
             tree,
             points,
@@ -114,7 +113,8 @@ fn on_cell(
             image: |x: &[f64; 3]| mirrors.reflect_position(x, mask),
             is_own: mask.is_own(),
             pulls: &mut on_image,
-        });
+        };
+        on_cell.run();
         for ([own, image], [x, y, z, depth]) in pulls.iter_mut().zip(on_image) {
             let [x, y, z] = Mirrors::reflect_vector(&[x, y, z], mask);
             let sum = if mask.is_own() { own } else { image };
