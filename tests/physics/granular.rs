@@ -117,3 +117,27 @@ fn a_column_of_sand_runs_out_as_far_as_sand_does() {
     // At rest: a fiftieth of the speed of its fall.
     assert!(energy < 0.0004 * 9.81 * 0.1, "{energy}");
 }
+
+/// Rock that has failed and keeps friction bears shear, which the corrected form hands on without a torque.
+#[test]
+fn broken_rock_turns_by_nothing() {
+    let mut s = start(inline(
+        "dimension = 3\nspacing = \"1 mm\"\n[run]\nend_time = \"4 us\"\n\
+         [material.rock]\nlibrary = \"granite\"\n\
+         [material.al]\nlibrary = \"aluminium-6061-ductile\"\n\
+         [[body]]\nname = \"target\"\nmaterial = \"rock\"\n\
+         shape.cylinder = { axis = \"z\", radius = \"10 mm\", length = \"8 mm\", centre = [0, 0, \"-4 mm\"] }\n\
+         [[body]]\nname = \"sphere\"\nmaterial = \"al\"\n\
+         shape.sphere = { centre = [0, 0, \"3 mm\"], diameter = \"5 mm\" }\n\
+         velocity = [\"1 km/s\", 0, \"-1.5 km/s\"]\ntouch = { body = \"target\", direction = \"-z\" }\n",
+    ));
+    run_with(&mut s, 1.0, |_| {});
+    let failed = (0..s.particles.owned()).filter(|&i| s.particles.damage[i] >= 1.0);
+    assert!(failed.count() > 200);
+    let worst = &s.state.worst;
+    println!("{:?}", worst.angular_momentum_error);
+    assert!(
+        worst.angular_momentum_error.iter().all(|&e| e < 1e-12),
+        "{worst:?}"
+    );
+}

@@ -65,8 +65,9 @@ impl Faces {
 
     /// Finds the matrices of owned particles, before halo particles get them.
     pub(super) fn correct(&self, sums: &Sums, particles: &mut ParticleStore, lists: &Lists) {
-        let (damage, found) = (
+        let (damage, body, found) = (
             &particles.damage,
+            &particles.body,
             Scatter::new(&mut particles.face_correction),
         );
         let (scale, dimension, instructions) = (sums.scale, sums.dimension, instructions());
@@ -74,7 +75,7 @@ impl Faces {
         let chunks = lists.chunks().par_iter().with_max_len(CHUNKS_AT_ONCE);
         with_scale!(scale, scale => chunks.for_each(|chunk| {
             let motion = sources(lists, scale);
-            instructions.run(Corrections { chunk, motion, dimension, images, pressed, damage, found });
+            instructions.run(Corrections { chunk, motion, dimension, images, pressed, damage, body, sums, found });
         }));
     }
 
@@ -110,19 +111,24 @@ struct Corrections<'a, S> {
     images: &'a [Image],
     pressed: &'a [bool],
     damage: &'a [f64],
+    body: &'a [u32],
+    sums: &'a Sums,
     found: &'a Scatter<'a, [f64; 6]>,
 }
 
 impl<S: PairScale> Corrections<'_, S> {
-    /// Receivers that have failed: bit k is lane k.
+    /// Receivers that have failed and bear no shear: bit k is lane k.
     #[inline(always)]
-    fn failed(&self, cluster: &Cluster) -> u8 {
-        let mut failed = 0;
+    fn loose(&self, cluster: &Cluster) -> u8 {
+        let mut loose = 0;
         for (k, &place) in cluster.valid().iter().enumerate() {
-            let damage = self.damage.get(self.images[place as usize].slot());
-            failed |= u8::from(damage.is_some_and(|&damage| damage >= FAILED)) << k;
+            let i = self.images[place as usize].slot();
+            let failed = self.damage.get(i).is_some_and(|&damage| damage >= FAILED);
+            let material =
+                || &self.sums.materials[self.sums.material_of_body[self.body[i] as usize]];
+            loose |= u8::from(failed && !material().failure.options.keeps_shear()) << k;
         }
-        failed
+        loose
     }
 }
 
@@ -138,7 +144,7 @@ impl<S: PairScale> Vectorised for Corrections<'_, S> {
             let correction = FaceCorrection {
                 around: self.motion.around(cluster.receivers, neighbours),
                 dimension: self.dimension,
-                plain: self.failed(cluster),
+                plain: self.loose(cluster),
             }
             .run::<V>();
             for (k, &place) in cluster.valid().iter().enumerate() {

@@ -163,18 +163,20 @@ impl<'a> MaterialUpdate<'a> {
         self.points.heating[i]
     }
 
-    /// Receivers of a cluster that had failed before this step: bit k is lane k.
+    /// Receivers of a cluster that had failed before this step and bear no shear: bit k is lane k.
     #[inline(always)]
-    pub(super) fn failed(&self, cluster: &Cluster) -> u8 {
+    pub(super) fn loose(&self, cluster: &Cluster) -> u8 {
         if self.points.damage.is_empty() {
             return 0;
         }
-        let mut failed = 0;
+        let mut loose = 0;
         for (k, i) in self.slot(cluster).into_iter().enumerate() {
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            failed |= u8::from(unsafe { self.points.has_failed(i) }) << k;
+            let failed = unsafe { self.points.has_failed(i) };
+            let material = || &self.materials[self.material_of_body[self.points.body[i] as usize]];
+            loose |= u8::from(failed && !material().failure.options.keeps_shear()) << k;
         }
-        failed
+        loose
     }
 
     /// The velocity gradient that the last step has left of particle `i`.

@@ -104,6 +104,13 @@ impl FailureOptions {
         dimension: 3,
     };
 
+    /// True if matter that has failed still bears shear.
+    #[inline(always)]
+    #[must_use]
+    pub fn keeps_shear(&self) -> bool {
+        matches!(self.effect, Effect::TensionLost | Effect::FrictionKept)
+    }
+
     /// True if matter that has reached its strength softens before it has failed.
     #[inline(always)]
     #[must_use]

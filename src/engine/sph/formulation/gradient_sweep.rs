@@ -86,8 +86,8 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
                 continue;
             }
             let around = self.motion.around(cluster.receivers, neighbours);
-            let failed = || update.failed(cluster);
-            let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, failed);
+            let loose = || update.loose(cluster);
+            let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, loose);
             update.apply::<V>(cluster, &gradient, neighbours.len(), &show);
         }
     }
