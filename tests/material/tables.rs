@@ -164,7 +164,7 @@ fn columns_of(numbers: &[f64], width: usize, flags: &str) -> String {
     text
 }
 
-/// A record 301 of the stiffened gas: g/cm³, K, GPa, MJ/kg.
+/// A record 301 of the stiffened gas: g/cm³, K, `GPa`, MJ/kg.
 fn record(columns: i32, rows: i32) -> Vec<f64> {
     let (rho, t) = (nodes(100.0, 4000.0, columns), nodes(50.0, 5000.0, rows));
     let mut numbers = vec![f64::from(columns), f64::from(rows)];

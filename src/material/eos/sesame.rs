@@ -6,7 +6,7 @@
 //! a record with `RECORD TYPE = 301 NWDS = …`, and its numbers are 16 characters wide.
 //!
 //! A record 301 has the numbers of densities and temperatures, the densities (g/cm³), the temperatures (K), and then for each
-//! temperature, and for each density at it, the pressures (GPa), likewise the specific energies (MJ/kg), and often
+//! temperature, and for each density at it, the pressures (`GPa`), likewise the specific energies (MJ/kg), and often
 //! the free energies.
 
 /// Numbers of a line.
