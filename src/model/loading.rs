@@ -55,16 +55,7 @@ const INTERVALS: u32 = 256;
 /// it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
-    /// The axis of gravity.
-    pub axis: Axis,
-    /// 1 or −1: the sense of the axis in which things fall.
-    pub down: f64,
-    /// Where the axis enters the body (m).
-    pub top: f64,
-    /// How deep the body is (m).
-    pub depth: f64,
-    /// Lateral stress over vertical stress.
-    pub lateral: f64,
+    of: ColumnOf,
     /// Vertical stress (Pa), compression positive, and its growth in an interval (Pa), at each node of the depth.
     rows: Vec<[f64; 2]>,
 }
@@ -105,20 +96,13 @@ impl Column {
             vertical += (a + 2.0 * (b + c) + d) / 6.0;
             rows.push([vertical, growth(depth + width, vertical)?]);
         }
-        Some(Self {
-            axis: of.axis,
-            down: of.down,
-            top: of.top,
-            depth: of.depth,
-            lateral: of.lateral,
-            rows,
-        })
+        Some(Self { of, rows })
     }
 
     /// Vertical stress (Pa), compression positive, at a depth (m), which stays within the body.
     #[must_use]
     pub fn vertical(&self, depth: f64) -> f64 {
-        let place = f64::from(INTERVALS) * (depth / self.depth).clamp(0.0, 1.0);
+        let place = f64::from(INTERVALS) * (depth / self.of.depth).clamp(0.0, 1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the table
         let n = (place as usize).min(self.rows.len() - 2);
         #[allow(clippy::cast_precision_loss, reason = "at most 256")]
@@ -131,11 +115,11 @@ impl Column {
     /// Stress `xx yy zz xy xz yz` (Pa), tension positive, at a position (m).
     #[must_use]
     pub fn stress(&self, position: &Vec3) -> [f64; 6] {
-        let axis = self.axis.index();
-        let vertical = self.vertical(self.down * (position[axis] - self.top));
+        let (axis, of) = (self.of.axis.index(), &self.of);
+        let vertical = self.vertical(of.down * (position[axis] - of.top));
         let mut stress = [0.0; 6];
         for (a, component) in stress[..3].iter_mut().enumerate() {
-            *component = -vertical * if a == axis { 1.0 } else { self.lateral };
+            *component = -vertical * if a == axis { 1.0 } else { of.lateral };
         }
         stress
     }
