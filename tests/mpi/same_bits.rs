@@ -18,6 +18,9 @@ const QUARTER: &[&str] = &[
     "output.checkpoint_every=0.04us",
 ];
 
+/// Stops of a case of half the time, while its shock runs.
+const EARLY: [&str; 2] = ["0.03us", "0.06us"];
+
 fn whipple(ranks: usize, arguments: &[&str]) -> Output {
     let script = "source jobs/env.sh; exec mpirun -n \"$0\" \"$@\"";
     Command::new("bash")
@@ -59,6 +62,25 @@ fn assert_same(a: &Path, b: &Path, what: &str) {
     let text = String::from_utf8_lossy(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{what}:\n{text}");
     assert!(text.contains("agree to the last bit"), "{what}:\n{text}");
+}
+
+/// Runs a case alone on two threads, and holds it to that on two and five ranks, and in legs with stops at two times. Returns
+/// the folder of the first.
+fn same_anywhere(
+    case: &[&str],
+    stops: [&str; 2],
+    at: impl Fn(&str) -> PathBuf,
+    what: &str,
+) -> PathBuf {
+    let one = at("one");
+    run(1, 2, case, &[], &one);
+    for ranks in [2, 5] {
+        let other = at(&format!("{ranks}"));
+        run(ranks, 1, case, &[], &other);
+        assert_same(&one, &other, &format!("{what} on {ranks} ranks"));
+    }
+    assert_same_in_legs(case, &[3, 1, 5], &stops, &one, &at("legs"));
+    one
 }
 
 /// Runs a case in legs on so many ranks each, with a stop at a time after each but the last, and
@@ -293,18 +315,10 @@ fn failure_on_any_ranks_and_through_restarts() {
         ] {
             case.extend(["--set", set]);
         }
-        let one = at("one");
-        run(1, 2, &case, &[], &one);
+        let one = same_anywhere(&case, EARLY, at, name);
         let history = std::fs::read_to_string(one.join("history.csv")).expect("the table");
         let failed = column(&history, "failed_mass").pop().expect("a row");
         assert!(failed.parse::<f64>().expect("a number") > 0.0, "{name}");
-        for ranks in [2, 5] {
-            let other = at(&format!("{ranks}"));
-            run(ranks, 1, &case, &[], &other);
-            assert_same(&one, &other, &format!("{name} on {ranks} ranks"));
-        }
-        let stops = ["0.03us", "0.06us"];
-        assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
     });
 }
 
@@ -331,15 +345,7 @@ fn pores_crush_alike_on_any_ranks_and_through_restarts() {
         for set in [&*pores, strength, failure, shown] {
             case.extend(["--set", set]);
         }
-        let one = at("one");
-        run(1, 2, &case, &[], &one);
-        for ranks in [2, 5] {
-            let other = at(&format!("{ranks}"));
-            run(ranks, 1, &case, &[], &other);
-            assert_same(&one, &other, &format!("{law} on {ranks} ranks"));
-        }
-        let stops = ["0.03us", "0.06us"];
-        assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+        same_anywhere(&case, EARLY, at, law);
     });
 }
 
@@ -359,15 +365,7 @@ fn a_charge_burns_alike_on_any_ranks_and_through_restarts() {
     ] {
         case.extend(["--set", set]);
     }
-    let one = at("one");
-    run(1, 2, &case, &[], &one);
-    for ranks in [2, 5] {
-        let other = at(&format!("{ranks}"));
-        run(ranks, 1, &case, &[], &other);
-        assert_same(&one, &other, &format!("{ranks} ranks"));
-    }
-    let stops = ["0.03us", "0.06us"];
-    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+    same_anywhere(&case, EARLY, at, "a charge");
 }
 
 /// A plate under its weight and a pressure on its rear, which relaxes before the sphere starts, and a sphere under pressure:
@@ -387,19 +385,11 @@ fn a_gentle_start_on_any_ranks_and_through_restarts() {
     ] {
         case.extend(["--set", set]);
     }
-    let one = at("one");
-    run(1, 2, &case, &[], &one);
+    let one = same_anywhere(&case, ["0.02us", "0.07us"], at, "a gentle start");
     let loads = std::fs::read_to_string(one.join("loads.csv")).expect("the table");
     for name in ["relaxation", "pressure-1", "sphere waits"] {
         assert!(loads.contains(&format!(",{name},")), "{name}: {loads}");
     }
-    for ranks in [2, 5] {
-        let other = at(&format!("{ranks}"));
-        run(ranks, 1, &case, &[], &other);
-        assert_same(&one, &other, &format!("{ranks} ranks"));
-    }
-    let stops = ["0.02us", "0.07us"];
-    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
 }
 
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
@@ -570,15 +560,7 @@ fn self_gravity_on_any_ranks_and_through_a_restart() {
     ] {
         case.extend(["--set", set]);
     }
-    let one = at("one");
-    run(1, 2, &case, &[], &one);
-    for ranks in [2, 5] {
-        let other = at(&format!("{ranks}"));
-        run(ranks, 1, &case, &[], &other);
-        assert_same(&one, &other, &format!("{ranks} ranks"));
-    }
-    let stops = ["0.03us", "0.06us"];
-    assert_same_in_legs(&case, &[3, 1, 5], &stops, &one, &at("legs"));
+    let one = same_anywhere(&case, EARLY, at, "self-gravity");
     let history = std::fs::read_to_string(one.join("history.csv")).expect("the table");
     let energy = column(&history, "self_gravity_energy");
     let energy: f64 = energy.last().expect("a row").parse().expect("an energy");
