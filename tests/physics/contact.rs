@@ -244,3 +244,24 @@ fn a_potential_of_the_spacing_begins_at_rest_and_keeps_energy() {
         assert!(worst.energy_error < most, "{name}: {}", worst.energy_error);
     }
 }
+
+/// Sandstone under fast steel bears 2.5 times its modulus. With contact as soft as the stone at rest 21 particles of both
+/// stood between those of the other for long.
+#[test]
+fn soft_stone_lets_no_fast_steel_in() {
+    let mut s = start(inline(
+        "dimension = 3\nspacing = \"0.5 mm\"\n[run]\nend_time = \"0.8 us\"\n\
+         [material.stone]\nlibrary = \"sandstone\"\n[material.steel]\nlibrary = \"iron-armco-ductile\"\n\
+         [[body]]\nname = \"stone\"\nmaterial = \"stone\"\n\
+         shape.cylinder = { axis = \"z\", radius = \"8 mm\", length = \"5 mm\", centre = [0, 0, \"-2.5 mm\"] }\n\
+         [[body]]\nname = \"sphere\"\nmaterial = \"steel\"\n\
+         shape.sphere = { centre = [0, 0, \"3 mm\"], diameter = \"4 mm\" }\n\
+         velocity = [\"1.5 km/s\", 0, \"-2.6 km/s\"]\n\
+         touch = { body = \"stone\", direction = \"-z\" }\n",
+    ));
+    run_with(&mut s, f64::INFINITY, |_| {});
+    let worst = &s.state.worst;
+    println!("{} steps, {worst:?}", s.state.step);
+    assert_eq!(worst.interpenetrated, 0);
+    assert!(worst.energy_error < 2e-3, "{}", worst.energy_error);
+}

@@ -73,7 +73,7 @@ impl Constants for Overlap {
     fn pair(&self, of: &Between) -> OverlapPair {
         let [a, b] = of.bodies;
         OverlapPair {
-            modulus: self.stiffness * of.modulus,
+            modulus: self.stiffness * of.modulus.max(impact_stiffness(of.case, of.indices)),
             touching: populate::touching_value(a, b, of.case.dimension),
             core_modulus: self.core_stiffness * core_scale(of.case, of.indices),
             core_radius: self.core_radius * of.pair.spacing,
@@ -91,8 +91,13 @@ impl Constants for Overlap {
 /// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
 fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
     let modulus = harmonic_mean(case, bodies, |body| case.contact_modulus(body));
+    modulus.max(impact_stiffness(case, bodies))
+}
+
+/// `.85 ρ v²` of two bodies (Pa), see [`core_scale`].
+fn impact_stiffness(case: &Case, bodies: [usize; 2]) -> f64 {
     let speed = case.closing_speed(bodies[0], bodies[1]);
-    modulus.max(Case::impact_stiffness(meeting_density(case, bodies), speed))
+    Case::impact_stiffness(meeting_density(case, bodies), speed)
 }
 
 /// Harmonic mean of two bodies' densities (kg/m³).
