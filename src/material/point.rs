@@ -27,6 +27,8 @@ mod plastic_strain;
 mod principal_stress;
 mod principal_tension;
 mod radial_return;
+mod riedel_hiermaier_thoma;
+mod riedel_hiermaier_thoma_failure;
 mod spall;
 mod steinberg_guinan;
 mod viscous;
@@ -59,6 +61,8 @@ pub use neo_hookean::NeoHookean;
 pub use plastic_strain::PlasticStrain;
 pub use principal_stress::PrincipalStress;
 pub(super) use radial_return::equivalent_stress;
+pub use riedel_hiermaier_thoma::RiedelHiermaierThoma;
+pub use riedel_hiermaier_thoma_failure::RiedelHiermaierThomaFailure;
 pub use spall::{AfterSpall, Spall};
 pub use steinberg_guinan::SteinbergGuinan;
 pub use viscous::Viscous;
@@ -146,6 +150,8 @@ strength_laws! {
     johnson_holmquist_2: JohnsonHolmquist2;
     /// Strength of concrete.
     holmquist_johnson_cook: HolmquistJohnsonCook;
+    /// Strength of concrete by pressure, Lode angle and rate.
+    riedel_hiermaier_thoma: RiedelHiermaierThoma;
 }
 
 // The key in the input, and the law. A material may have all of them; they act in this order.
@@ -166,6 +172,8 @@ failure_laws! {
     johnson_holmquist_2: JohnsonHolmquist2Failure;
     /// Damage of concrete.
     holmquist_johnson_cook: HolmquistJohnsonCookFailure;
+    /// Damage of concrete beyond its failure surface.
+    riedel_hiermaier_thoma: RiedelHiermaierThomaFailure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

@@ -18,6 +18,7 @@ mod fluids;
 mod granular;
 mod plastic;
 mod porosity;
+mod rht;
 mod rubber;
 mod spall;
 mod strength;

@@ -5,7 +5,8 @@ use super::impact::{UNCUT, aluminium};
 use super::rocks::basalt;
 use crate::{
     Compaction, Effect, Eos, Failure, HolmquistJohnsonCook, HolmquistJohnsonCookCompaction,
-    HolmquistJohnsonCookFailure, Lundborg, PAlpha, Polynomial, Porosity, Strength,
+    HolmquistJohnsonCookFailure, Lundborg, PAlpha, Polynomial, Porosity, RiedelHiermaierThoma,
+    RiedelHiermaierThomaFailure, Strength,
 };
 
 const FOAM: &str = "Jutzi, Benz & Michel (2008), Icarus 198, 242, section 5.1, after Herrmann (1969); as the tests of \
@@ -18,6 +19,9 @@ const CONCRETE: &str = "concrete of 48 MPa of Holmquist, Johnson & Cook (1993), 
      (SetHJCMat) quotes it";
 const GRAIN: &str = "1.1 times the 2440 kg/m³ of the whole, by the locking strain of .1; Holmquist, Johnson & Cook (1993), 14th Int. \
      Symp. Ballistics, 591, as public decks quote it";
+const CONCRETE_35: &str = "concrete of 35 MPa of Borrvall & Riedel (2011), The RHT concrete model in LS-DYNA, 8th European LS-DYNA Users \
+     Conference; as commonly quoted, not compared with the paper";
+const PORES_35: &str = "the speed of sound of the whole in the library of Autodyn, which gives ν = .17 with G; as commonly quoted, not compared with it";
 const JSC: &str =
     "JSC-1A of Luther et al. (2022), as miluphcuda quotes it in Regolith_simulant.cfg";
 const JSC_SHEAR: &str = "ν = .3, as in miluphcuda's Regolith_simulant.cfg, with ρ₀ c_e² of the whole for the bulk modulus; there the \
@@ -52,6 +56,14 @@ records! {
             ("failure.effect", LAW),
             ("density", GRAIN),
             ("", CONCRETE),
+        ];
+    "concrete-35", "concrete of 35 MPa, Riedel-Hiermaier-Thoma strength and damage, P-alpha":
+        concrete_35(),
+        &[
+            ("porosity.p_alpha.sound_speed", PORES_35),
+            ("porosity.p_alpha.transition", PLAIN),
+            ("failure.effect", LAW),
+            ("", CONCRETE_35),
         ];
     "regolith-jsc-1a", "lunar regolith simulant JSC-1A with 42 % of pores, P-alpha, friction, for impacts":
         {
@@ -117,6 +129,49 @@ fn concrete() -> Parts {
     }
 }
 
+/// Concrete of 35 `MPa`; the density is that of the solid.
+fn concrete_35() -> Parts {
+    let mut failure = Failure {
+        riedel_hiermaier_thoma: Some(RiedelHiermaierThomaFailure {
+            d1: 0.04,
+            d2: 1.0,
+            least_strain: 0.01,
+        }),
+        ..Failure::NONE
+    };
+    failure.options.effect = Effect::FrictionKept;
+    Parts {
+        density: 2750.0,
+        eos: Eos::Polynomial(Polynomial {
+            k1: 35.27e9,
+            k2: 39.58e9,
+            k3: 9.04e9,
+            gamma0: 1.22,
+        }),
+        strength: Strength::RiedelHiermaierThoma(RiedelHiermaierThoma {
+            shear_modulus: 16.7e9,
+            a: 1.6,
+            n: 0.61,
+            compressive_strength: 35e6,
+            tensile_ratio: 0.1,
+            shear_ratio: 0.18,
+            lode_ratio: 0.6805,
+            lode_slope: 0.0105,
+            elastic_compression: 0.53,
+            elastic_tension: 0.7,
+            hardening: 0.5,
+            b: 1.6,
+            m: 0.61,
+            rate_compression: 0.032,
+            rate_tension: 0.036,
+            reference_compression: 3e-5,
+            reference_tension: 3e-6,
+        }),
+        thermal: None,
+        failure,
+    }
+}
+
 /// One and the locking strain.
 const CONCRETE_DISTENSION: f64 = 1.1;
 
@@ -135,6 +190,13 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
                 Compaction::HolmquistJohnsonCookCompaction(law),
             )
         }
+        "concrete-35" => {
+            let law = PAlpha {
+                exponent: 3.0,
+                ..p_alpha_law([23.3e6, 6e9], 2920.0)
+            };
+            (2750.0 / 2314.0, Compaction::PAlpha(law))
+        }
         "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 1200.0)),
         _ => return None,
     };
@@ -142,8 +204,13 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
 }
 
 /// Quadratic, of `[P_e, P_s]` (Pa) and the bulk sound speed of virgin matter (m/s).
-fn p_alpha([elastic_pressure, solid_pressure]: [f64; 2], sound_speed: f64) -> Compaction {
-    Compaction::PAlpha(PAlpha {
+fn p_alpha(pressures: [f64; 2], sound_speed: f64) -> Compaction {
+    Compaction::PAlpha(p_alpha_law(pressures, sound_speed))
+}
+
+/// The same, as a law.
+fn p_alpha_law([elastic_pressure, solid_pressure]: [f64; 2], sound_speed: f64) -> PAlpha {
+    PAlpha {
         elastic_pressure,
         solid_pressure,
         exponent: 2.0,
@@ -151,5 +218,5 @@ fn p_alpha([elastic_pressure, solid_pressure]: [f64; 2], sound_speed: f64) -> Co
         transition_distension: 1.0,
         transition_exponent: 2.0,
         sound_speed,
-    })
+    }
 }

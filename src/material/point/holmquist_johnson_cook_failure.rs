@@ -22,16 +22,17 @@ law! {
     }
 }
 
+/// `max[D₁ x^D₂, ε_min]` of the constants `[D₁, D₂, ε_min]`.
+pub(super) fn failure_strain([d1, d2, least]: [f64; 3], x: f64) -> f64 {
+    let power = if x > 0.0 { libm::pow(x, d2) } else { 0.0 };
+    at_least(d1 * power, least)
+}
+
 impl HolmquistJohnsonCookFailure {
     /// Failure strain at `p* + T*`.
     #[must_use]
     pub fn failure_strain(&self, above: f64) -> f64 {
-        let power = if above > 0.0 {
-            libm::pow(above, self.d2)
-        } else {
-            0.0
-        };
-        at_least(self.d1 * power, self.least_strain)
+        failure_strain([self.d1, self.d2, self.least_strain], above)
     }
 
     /// Lane by lane: only what flows or crushes is damaged.

@@ -194,6 +194,10 @@ pub struct Curves {
     pub intact: Lanes,
     /// Fractured strength (Pa), at first without bound.
     pub fractured: Lanes,
+    /// Share of the intact strength at which flow begins, at first all of it.
+    pub onset: Lanes,
+    /// Plastic strain from which on intact matter has all of its strength, at first zero.
+    pub hardened: Lanes,
 }
 
 impl Curves {
@@ -215,6 +219,7 @@ impl Curves {
             above: above.0,
             intact: intact.0,
             fractured: fractured.0,
+            ..*self
         };
     }
 
@@ -254,6 +259,8 @@ impl Conditions {
                 above: [0.0; LANES],
                 intact: [f64::MAX; LANES],
                 fractured: [f64::MAX; LANES],
+                onset: [1.0; LANES],
+                hardened: [0.0; LANES],
             },
             options: FailureOptions::DEFAULT,
         }

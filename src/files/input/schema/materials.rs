@@ -342,6 +342,43 @@ macro_rules! strength_laws {
                 /// Reference strain rate.
                 reference_rate: Placed<Rate> = "1/s", Positive;
             }
+            /// `strength.riedel_hiermaier_thoma`: concrete, by pressure, Lode angle and rate.
+            riedel_hiermaier_thoma: RiedelHiermaierThomaParams => RiedelHiermaierThoma {
+                /// Shear modulus.
+                shear_modulus: Placed<Pressure>, Positive;
+                /// Coefficient A of the failure surface.
+                a: Spanned<f64>, Positive;
+                /// Exponent N of the failure surface.
+                n: Spanned<f64>, Positive;
+                /// Compressive strength.
+                compressive_strength: Placed<Pressure>, Positive;
+                /// Tensile strength, over the compressive strength.
+                tensile_ratio: Spanned<f64> = 0.1, Positive;
+                /// Shear strength, over the compressive strength.
+                shear_ratio: Spanned<f64> = 0.18, Positive;
+                /// Strength in tension over that in compression, without pressure.
+                lode_ratio: Spanned<f64> = 0.6805, Positive;
+                /// Growth of that ratio with the pressure over the compressive strength.
+                lode_slope: Spanned<f64> = 0.0105, NotNegative;
+                /// Share of the compressive strength at which flow begins.
+                elastic_compression: Spanned<f64> = 0.53, UpToOne;
+                /// Share of the tensile strength at which flow begins.
+                elastic_tension: Spanned<f64> = 0.7, UpToOne;
+                /// Share of the shear modulus while flow hardens.
+                hardening: Spanned<f64> = 0.5, UpToOne;
+                /// Coefficient of the friction of what is broken.
+                b: Spanned<f64>, NotNegative;
+                /// Exponent of that friction.
+                m: Spanned<f64>, NotNegative;
+                /// Exponent of the rate in compression.
+                rate_compression: Spanned<f64> = 0.0, NotNegative;
+                /// Exponent of the rate in tension.
+                rate_tension: Spanned<f64> = 0.0, NotNegative;
+                /// Reference strain rate in compression.
+                reference_compression: Placed<Rate> = "3e-5/s", Positive;
+                /// Reference strain rate in tension.
+                reference_tension: Placed<Rate> = "3e-6/s", Positive;
+            }
         }
     };
 }
@@ -418,6 +455,15 @@ macro_rules! failure_laws {
             }
             /// `failure.holmquist_johnson_cook`: damage of concrete.
             holmquist_johnson_cook: HolmquistJohnsonCookFailureParams => HolmquistJohnsonCookFailure {
+                /// D₁.
+                d1: Spanned<f64>, NotNegative;
+                /// D₂.
+                d2: Spanned<f64>, NotNegative;
+                /// Least failure strain.
+                least_strain: Spanned<f64> = 0.01, Positive;
+            }
+            /// `failure.riedel_hiermaier_thoma`: damage of concrete beyond its failure surface.
+            riedel_hiermaier_thoma: RiedelHiermaierThomaFailureParams => RiedelHiermaierThomaFailure {
                 /// D₁.
                 d1: Spanned<f64>, NotNegative;
                 /// D₂.

@@ -223,6 +223,7 @@ fn has_failure_strain(failure: &Failure) -> bool {
         || failure.collins.is_some()
         || failure.johnson_holmquist_2.is_some()
         || failure.holmquist_johnson_cook.is_some()
+        || failure.riedel_hiermaier_thoma.is_some()
 }
 
 /// Why a strength cannot fail that way.
@@ -243,6 +244,10 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         && !matches!(strength, Strength::HolmquistJohnsonCook(_))
     {
         Some("`holmquist_johnson_cook` damages the strength of that name alone")
+    } else if failure.riedel_hiermaier_thoma.is_some()
+        && !matches!(strength, Strength::RiedelHiermaierThoma(_))
+    {
+        Some("`riedel_hiermaier_thoma` damages the strength of that name alone")
     } else if strains && !strength.yields() {
         Some("a failure strain is a plastic one, and this material does not yield")
     } else {
