@@ -56,7 +56,85 @@ pub trait Lanes: Copy {
     fn min_where_positive(self, other: Self, mask: Self) -> Self;
     /// Bit k: lane k is smaller than `other`'s.
     fn less_than(self, other: Self) -> u8;
+
+    /// The first numbers of eight rows, the second, the third and the fourth.
+    #[inline(always)]
+    #[must_use]
+    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4] {
+        let mut columns = [Self::splat(0.0); 4];
+        for c in 0..4 {
+            let mut column = [0.0; LANES];
+            for k in 0..LANES {
+                column[k] = rows[k][c];
+            }
+            columns[c] = Self::read(&column);
+        }
+        columns
+    }
+
+    /// Each lane rounded.
+    #[inline(always)]
+    #[must_use]
+    fn narrow(self) -> [f32; LANES] {
+        let (lanes, mut narrow) = (self.store().0, [0.0; LANES]);
+        for k in 0..LANES {
+            #[allow(clippy::cast_possible_truncation, reason = "rounding is meant")]
+            {
+                narrow[k] = lanes[k] as f32;
+            }
+        }
+        narrow
+    }
+
+    /// Bit k: the square of the distance of point k from `here` is less than `far[k]`.
+    #[inline(always)]
+    #[must_use]
+    fn near(points: [&[f32; TWICE]; 3], here: &[f32; 3], far: &[f32; TWICE]) -> u16 {
+        let mut bits = 0;
+        for k in 0..TWICE {
+            let r = [0, 1, 2].map(|a| points[a][k] - here[a]);
+            let square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+            bits |= u16::from(square < far[k]) << k;
+        }
+        bits
+    }
+
+    /// Writes those of sixteen numbers whose bits are set at `list[used..]`, in their order, and whatever behind them.
+    /// Returns the new end.
+    ///
+    /// # Panics
+    /// If there are less than sixteen places left.
+    #[inline(always)]
+    fn keep(numbers: &[u32; TWICE], bits: u16, list: &mut [u32], used: usize) -> usize {
+        let (mut next, mut left) = (used, bits);
+        while left != 0 {
+            list[next] = numbers[left.trailing_zeros() as usize];
+            (next, left) = (next + 1, left & (left - 1));
+        }
+        next
+    }
 }
+
+/// Single-precision lanes beside eight doubles.
+pub const TWICE: usize = 2 * LANES;
+
+/// For each set of bits, its members in ascending order, and whatever.
+pub static MEMBERS: [[u8; LANES]; 256] = {
+    let mut table = [[0; LANES]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut k, mut next) = (0, 0);
+        while k < 8 {
+            if bits >> k & 1 == 1 {
+                table[bits][next] = k;
+                next += 1;
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
 
 /// A loop, since what array methods call may be compiled apart from the vector code.
 macro_rules! each_lane {
@@ -154,10 +232,14 @@ impl Lanes for F64x8 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx512 {
     use std::arch::x86_64::{
-        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
-        _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_mask_min_pd,
-        _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd,
-        _mm512_sqrt_pd, _mm512_store_pd, _mm512_sub_pd,
+        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_loadu_pd, _mm256_storeu_ps, _mm512_add_pd,
+        _mm512_castpd256_pd512, _mm512_cmp_pd_mask, _mm512_cmp_ps_mask, _mm512_cvtpd_ps,
+        _mm512_div_pd, _mm512_fmadd_pd, _mm512_fmadd_ps, _mm512_fnmadd_pd, _mm512_insertf64x4,
+        _mm512_load_pd, _mm512_loadu_pd, _mm512_loadu_ps, _mm512_loadu_si512, _mm512_mask_min_pd,
+        _mm512_maskz_compress_epi32, _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_mul_ps,
+        _mm512_set1_pd, _mm512_set1_ps, _mm512_setzero_pd, _mm512_shuffle_f64x2, _mm512_sqrt_pd,
+        _mm512_store_pd, _mm512_storeu_si512, _mm512_sub_pd, _mm512_sub_ps, _mm512_unpackhi_pd,
+        _mm512_unpacklo_pd,
     };
 
     use super::{F64x8, Lanes};
@@ -248,6 +330,64 @@ pub mod avx512 {
         fn less_than(self, other: Self) -> u8 {
             unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) }
         }
+
+        #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            macro_rules! two {
+                ($a:expr, $b:expr) => {
+                    _mm512_insertf64x4::<1>(
+                        _mm512_castpd256_pd512(_mm256_loadu_pd(rows[$a].as_ptr())),
+                        _mm256_loadu_pd(rows[$b].as_ptr()),
+                    )
+                };
+            }
+            unsafe {
+                let (a, b, c, d) = (two!(0, 2), two!(1, 3), two!(4, 6), two!(5, 7));
+                let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+                let (even_up, odd_up) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+                [
+                    Self(_mm512_shuffle_f64x2::<0x88>(even, even_up)),
+                    Self(_mm512_shuffle_f64x2::<0x88>(odd, odd_up)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(even, even_up)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(odd, odd_up)),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn narrow(self) -> [f32; 8] {
+            let mut narrow = [0.0; 8];
+            unsafe { _mm256_storeu_ps(narrow.as_mut_ptr(), _mm512_cvtpd_ps(self.0)) };
+            narrow
+        }
+
+        #[inline(always)]
+        fn near(points: [&[f32; 16]; 3], here: &[f32; 3], far: &[f32; 16]) -> u16 {
+            macro_rules! along {
+                ($a:expr) => {
+                    _mm512_sub_ps(
+                        _mm512_loadu_ps(points[$a].as_ptr()),
+                        _mm512_set1_ps(here[$a]),
+                    )
+                };
+            }
+            unsafe {
+                let (x, y, z) = (along!(0), along!(1), along!(2));
+                let square = _mm512_fmadd_ps(z, z, _mm512_fmadd_ps(y, y, _mm512_mul_ps(x, x)));
+                _mm512_cmp_ps_mask::<_CMP_LT_OQ>(square, _mm512_loadu_ps(far.as_ptr()))
+            }
+        }
+
+        #[inline(always)]
+        fn keep(numbers: &[u32; 16], bits: u16, list: &mut [u32], used: usize) -> usize {
+            let room = &mut list[used..used + 16];
+            unsafe {
+                let all = _mm512_loadu_si512(numbers.as_ptr().cast());
+                let kept = _mm512_maskz_compress_epi32(bits, all);
+                _mm512_storeu_si512(room.as_mut_ptr().cast(), kept);
+            }
+            used + bits.count_ones() as usize
+        }
     }
 }
 
@@ -256,13 +396,17 @@ pub mod avx512 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-        _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd,
-        _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
-        _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm_loadl_epi64, _mm_storeu_ps, _mm256_add_pd,
+        _mm256_blendv_pd, _mm256_cmp_pd, _mm256_cmp_ps, _mm256_cvtepu8_epi32, _mm256_cvtpd_ps,
+        _mm256_div_pd, _mm256_fmadd_pd, _mm256_fmadd_ps, _mm256_fnmadd_pd, _mm256_load_pd,
+        _mm256_loadu_pd, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_pd, _mm256_min_pd,
+        _mm256_movemask_pd, _mm256_movemask_ps, _mm256_mul_pd, _mm256_mul_ps,
+        _mm256_permute2f128_pd, _mm256_permutevar8x32_epi32, _mm256_set1_pd, _mm256_set1_ps,
+        _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_si256, _mm256_sub_pd,
+        _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
     };
 
-    use super::{F64x8, Lanes};
+    use super::{F64x8, Lanes, MEMBERS};
 
     /// Eight doubles in two registers.
     #[derive(Clone, Copy)]
@@ -388,6 +532,150 @@ pub mod avx2 {
                 {
                     (low | high << 4) as u8
                 }
+            }
+        }
+
+        #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            macro_rules! four {
+                ($first:expr) => {{
+                    let a = _mm256_loadu_pd(rows[$first].as_ptr());
+                    let b = _mm256_loadu_pd(rows[$first + 1].as_ptr());
+                    let c = _mm256_loadu_pd(rows[$first + 2].as_ptr());
+                    let d = _mm256_loadu_pd(rows[$first + 3].as_ptr());
+                    let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+                    let (even_up, odd_up) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+                    [
+                        _mm256_permute2f128_pd::<0x20>(even, even_up),
+                        _mm256_permute2f128_pd::<0x20>(odd, odd_up),
+                        _mm256_permute2f128_pd::<0x31>(even, even_up),
+                        _mm256_permute2f128_pd::<0x31>(odd, odd_up),
+                    ]
+                }};
+            }
+            unsafe {
+                let (low, high) = (four!(0), four!(4));
+                [
+                    Self(low[0], high[0]),
+                    Self(low[1], high[1]),
+                    Self(low[2], high[2]),
+                    Self(low[3], high[3]),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn narrow(self) -> [f32; 8] {
+            let mut narrow = [0.0; 8];
+            unsafe {
+                _mm_storeu_ps(narrow.as_mut_ptr(), _mm256_cvtpd_ps(self.0));
+                _mm_storeu_ps(narrow.as_mut_ptr().add(4), _mm256_cvtpd_ps(self.1));
+            }
+            narrow
+        }
+
+        #[inline(always)]
+        fn near(points: [&[f32; 16]; 3], here: &[f32; 3], far: &[f32; 16]) -> u16 {
+            macro_rules! half {
+                ($first:expr) => {{
+                    macro_rules! along {
+                        ($a:expr) => {
+                            _mm256_sub_ps(
+                                _mm256_loadu_ps(points[$a].as_ptr().add($first)),
+                                _mm256_set1_ps(here[$a]),
+                            )
+                        };
+                    }
+                    let (x, y, z) = (along!(0), along!(1), along!(2));
+                    let square = _mm256_fmadd_ps(z, z, _mm256_fmadd_ps(y, y, _mm256_mul_ps(x, x)));
+                    let far = _mm256_loadu_ps(far.as_ptr().add($first));
+                    _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(square, far))
+                }};
+            }
+            #[allow(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "eight bits each"
+            )]
+            unsafe {
+                (half!(0) | half!(8) << 8) as u16
+            }
+        }
+
+        #[inline(always)]
+        fn keep(numbers: &[u32; 16], bits: u16, list: &mut [u32], used: usize) -> usize {
+            let ([low, high], mut used) = (bits.to_le_bytes(), used);
+            for (first, bits) in [(0, low), (8, high)] {
+                let room = &mut list[used..used + 8];
+                unsafe {
+                    let all = _mm256_loadu_si256(numbers.as_ptr().add(first).cast());
+                    let members = _mm_loadl_epi64(MEMBERS[bits as usize].as_ptr().cast());
+                    let kept = _mm256_permutevar8x32_epi32(all, _mm256_cvtepu8_epi32(members));
+                    _mm256_storeu_si256(room.as_mut_ptr().cast(), kept);
+                }
+                used += bits.count_ones() as usize;
+            }
+            used
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    reason = "small numbers"
+)]
+mod tests {
+    use super::{F64x8, LANES, Lanes, TWICE};
+    use crate::dispatch::{Vectorised, available};
+
+    /// What is done with lanes that does not show in sums.
+    struct Chosen;
+
+    impl Vectorised for Chosen {
+        type Output = ([F64x8; 4], [f32; LANES], Vec<u16>, Vec<Vec<u32>>);
+
+        #[inline(always)]
+        fn run<V: Lanes>(self) -> Self::Output {
+            let rows: [[f64; 4]; LANES] =
+                std::array::from_fn(|k| std::array::from_fn(|c| (10 * k + c) as f64 / 3.0));
+            let columns = V::columns(rows.each_ref());
+            let narrow = columns[1].narrow();
+            let points: [[f32; TWICE]; 3] =
+                std::array::from_fn(|a| std::array::from_fn(|k| (k + 5 * a) as f32));
+            let near = |far: f32| V::near(points.each_ref(), &[3.0, 8.0, 13.0], &[far; TWICE]);
+            let numbers: [u32; TWICE] = std::array::from_fn(|k| k as u32);
+            let keep = |bits: u16| {
+                let mut list = vec![99; 3 + 2 * TWICE];
+                let end = V::keep(&numbers, bits, &mut list, 3);
+                list.truncate(end);
+                list
+            };
+            (
+                columns.map(V::store),
+                narrow,
+                [0.0, 0.5, 3.5, 1e9].map(near).to_vec(),
+                [0, 1, 0x8000, 0x0180, 0xa5c3, 0xffff].map(keep).to_vec(),
+            )
+        }
+    }
+
+    #[test]
+    fn all_instruction_sets_choose_the_same() {
+        for set in available() {
+            let (columns, narrow, near, kept) = set.run(Chosen);
+            for k in 0..LANES {
+                for (c, column) in columns.iter().enumerate() {
+                    assert_eq!(column.0[k], (10 * k + c) as f64 / 3.0);
+                }
+                assert_eq!(narrow[k], ((10 * k + 1) as f64 / 3.0) as f32);
+            }
+            assert_eq!(near, [0, 0b1000, 0b1_1100, 0xffff], "{}", set.name());
+            for (list, bits) in kept.iter().zip([0, 1, 0x8000, 0x0180, 0xa5c3, 0xffff_u16]) {
+                let set_bits = (0..16).filter(|k| bits >> k & 1 == 1);
+                let wanted: Vec<u32> = [99; 3].into_iter().chain(set_bits).collect();
+                assert_eq!(list, &wanted, "{}", set.name());
             }
         }
     }

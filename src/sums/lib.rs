@@ -3,7 +3,7 @@
 //!
 //! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
-//! outside the support adds an exact zero.
+//! outside the support adds an exact zero. The first sweep of the corrected form leaves those out.
 
 pub mod corrected;
 pub mod face;
@@ -18,6 +18,7 @@ pub mod momentum;
 pub mod neighbour_mean;
 pub mod neighbourhood;
 pub mod normalised;
+mod own_pairs;
 pub mod principal;
 pub mod pull_sweep;
 pub mod scale;

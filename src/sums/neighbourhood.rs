@@ -186,7 +186,7 @@ impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
     fn divide(&self, ahead: usize, far: Distance<V>) -> (Divided<V>, D::Parts) {
         let index = self.index(ahead);
         let Sources { lengths, scale, .. } = self.around.sources;
-        let h = scale.length(self.h, length::<S>(lengths, index));
+        let h = scale.length(self.h, V::splat(length::<S>(lengths, index)));
         let (divisor, parts) = self.divisor.of(index, far.square, h);
         (Divided::of::<S>(far, h, divisor), parts)
     }
@@ -220,7 +220,7 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
                 inverse: now.inverse,
             },
             kernel: scale.kernel(distance, now.inverse_h),
-            h: scale.length(self.h, length::<S>(lengths, index)),
+            h: scale.length(self.h, V::splat(length::<S>(lengths, index))),
             beside: now.beside,
             parts,
         })
@@ -283,14 +283,14 @@ pub(crate) struct Separation<V> {
 
 /// Distances of eight receivers from one neighbour.
 #[derive(Clone, Copy)]
-struct Distance<V> {
-    square: V,
-    distance: V,
+pub(crate) struct Distance<V> {
+    pub(crate) square: V,
+    pub(crate) distance: V,
 }
 
 impl<V: Lanes> Distance<V> {
     #[inline(always)]
-    fn of(square: V) -> Self {
+    pub(crate) fn of(square: V) -> Self {
         let square = square.max(V::splat(SMALLEST_SQUARE));
         let distance = square.sqrt();
         Self { square, distance }
@@ -299,18 +299,18 @@ impl<V: Lanes> Distance<V> {
 
 /// The same, with what is divided by it.
 #[derive(Clone, Copy)]
-struct Divided<V> {
+pub(crate) struct Divided<V> {
     far: Distance<V>,
-    inverse: V,
+    pub(crate) inverse: V,
     /// `1/h_ij` (1/m), whatever if that is constant.
-    inverse_h: V,
+    pub(crate) inverse_h: V,
     beside: V,
 }
 
 impl<V: Lanes> Divided<V> {
     /// Inverses of a distance, of `h_ij` where that differs, and of what is wanted beside them, by one division.
     #[inline(always)]
-    fn of<S: PairScale>(far: Distance<V>, h: V, divisor: Option<V>) -> Self {
+    pub(crate) fn of<S: PairScale>(far: Distance<V>, h: V, divisor: Option<V>) -> Self {
         let (one, distance) = (V::splat(1.0), far.distance);
         let (inverse, inverse_h, beside) = match (divisor, S::VARIABLE) {
             (None, false) => (one.div(distance), one, one),

@@ -6,10 +6,10 @@
 pub struct MotionRecord {
     /// Position (m).
     pub position: [f64; 3],
-    /// Velocity (m/s).
-    pub velocity: [f64; 3],
     /// Volume m/ρ (m^d).
     pub volume: f64,
+    /// Velocity (m/s).
+    pub velocity: [f64; 3],
     /// Mass (kg).
     pub mass: f64,
 }

@@ -55,22 +55,24 @@ pub(super) struct Motion<V> {
 #[inline(always)]
 pub(crate) fn spin<V: Lanes>(strain: &[V; 9], plain: &[V; 9], moment: &Symmetric<V>) -> [V; 9] {
     let explained = times(strain, &full(moment));
-    let left = |a: usize| plain[a].sub(explained[a]);
+    let mut left = *plain;
+    for c in 0..9 {
+        left[c] = left[c].sub(explained[c]);
+    }
     let axial = [
-        left(7).sub(left(5)),
-        left(2).sub(left(6)),
-        left(3).sub(left(1)),
+        left[7].sub(left[5]),
+        left[2].sub(left[6]),
+        left[3].sub(left[1]),
     ];
     let [xx, yy, zz, xy, xz, yz] = *moment;
     let zero = V::splat(0.0);
-    let minus = |c: V| zero.sub(c);
     let inertia = [
         yy.add(zz),
         xx.add(zz),
         xx.add(yy),
-        minus(xy),
-        minus(xz),
-        minus(yz),
+        zero.sub(xy),
+        zero.sub(xz),
+        zero.sub(yz),
     ];
     let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
     let inertia = full(&inertia);
@@ -90,7 +92,8 @@ pub(crate) fn spin<V: Lanes>(strain: &[V; 9], plain: &[V; 9], moment: &Symmetric
         }
     }
     let [x, y, z] = turn;
-    [zero, minus(z), y, z, zero, minus(x), minus(y), x, zero]
+    let [back_x, back_y, back_z] = [zero.sub(x), zero.sub(y), zero.sub(z)];
+    [zero, back_z, y, z, zero, back_x, back_y, x, zero]
 }
 
 /// The motion whose strain rate D is that of the `corrected` gradient and whose [`spin`] W is that of
@@ -102,15 +105,11 @@ pub(super) fn motion<V: Lanes>(
     inner: &Symmetric<V>,
 ) -> Motion<V> {
     let half = V::splat(0.5);
-    let mean = |a: usize, b: usize| corrected[a].add(corrected[b]).mul(half);
-    let strain = full(&[
-        corrected[0],
-        corrected[4],
-        corrected[8],
-        mean(1, 3),
-        mean(2, 6),
-        mean(5, 7),
-    ]);
+    let mut strain = *corrected;
+    for (a, b) in [(1, 3), (2, 6), (5, 7)] {
+        strain[a] = corrected[a].add(corrected[b]).mul(half);
+        strain[b] = strain[a];
+    }
     let spin = spin(&strain, &plain.gradient, &plain.moment);
     let turned = times(&spin, &full(&plain.moment));
     let mut stretch = plain.gradient;
@@ -125,9 +124,9 @@ pub(super) fn motion<V: Lanes>(
     }
     let linear = along(&expected, &plain.place);
     let weight = plain.some_weight();
-    let rest = |a: usize| plain.velocity[a].add(linear[a]).div(weight);
-    Motion {
-        gradient,
-        rest: [rest(0), rest(1), rest(2)],
+    let mut rest = plain.velocity;
+    for a in 0..3 {
+        rest[a] = rest[a].add(linear[a]).div(weight);
     }
+    Motion { gradient, rest }
 }
