@@ -144,8 +144,8 @@ pub trait PairScale: Copy + Sync {
     /// True if smoothing lengths differ.
     const VARIABLE: bool;
 
-    /// `h_ij` (m) of receivers of `h_i` and a neighbour of `h_j` (m).
-    fn length<V: Lanes>(&self, h_i: V, h_j: f64) -> V;
+    /// `h_ij` (m) of receivers of `h_i` and neighbours of `h_j` (m).
+    fn length<V: Lanes>(&self, h_i: V, h_j: V) -> V;
 
     /// For pairs at `distance` (m), with `1/h_ij` (1/m), whatever if that is constant.
     fn kernel<V: Lanes>(&self, distance: V, inverse_h: V) -> PairKernel<V>;
@@ -218,7 +218,7 @@ impl PairScale for ConstantScale {
     const VARIABLE: bool = false;
 
     #[inline(always)]
-    fn length<V: Lanes>(&self, _: V, _: f64) -> V {
+    fn length<V: Lanes>(&self, _: V, _: V) -> V {
         V::splat(self.h)
     }
 
@@ -278,8 +278,8 @@ impl PairScale for MeanScale {
     const VARIABLE: bool = true;
 
     #[inline(always)]
-    fn length<V: Lanes>(&self, h_i: V, h_j: f64) -> V {
-        h_i.add(V::splat(h_j)).mul(V::splat(0.5))
+    fn length<V: Lanes>(&self, h_i: V, h_j: V) -> V {
+        h_i.add(h_j).mul(V::splat(0.5))
     }
 
     #[inline(always)]

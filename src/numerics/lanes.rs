@@ -24,6 +24,10 @@ pub trait Lanes: Copy {
     fn read(values: &[f64; LANES]) -> Self;
     /// To memory.
     fn store(self) -> F64x8;
+    /// Eight rows of four numbers by columns: number c of row k is lane k of vector c.
+    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4];
+    /// The same of rows of eight.
+    fn transposed(rows: [&[f64; LANES]; LANES]) -> [Self; LANES];
     /// Sum of each lane.
     #[must_use]
     fn add(self, other: Self) -> Self;
@@ -58,6 +62,18 @@ pub trait Lanes: Copy {
     fn less_than(self, other: Self) -> u8;
 }
 
+/// Eight rows by columns, in plain memory.
+#[inline(always)]
+fn by_columns<const N: usize>(rows: [&[f64; N]; LANES]) -> [F64x8; N] {
+    let mut all = [F64x8([0.0; LANES]); N];
+    for k in 0..LANES {
+        for c in 0..N {
+            all[c].0[k] = rows[k][c];
+        }
+    }
+    all
+}
+
 /// A loop, since what array methods call may be compiled apart from the vector code.
 macro_rules! each_lane {
     ($k:ident => $value:expr) => {{
@@ -88,6 +104,16 @@ impl Lanes for F64x8 {
     #[inline(always)]
     fn store(self) -> F64x8 {
         self
+    }
+
+    #[inline(always)]
+    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4] {
+        by_columns(rows)
+    }
+
+    #[inline(always)]
+    fn transposed(rows: [&[f64; LANES]; LANES]) -> [Self; LANES] {
+        by_columns(rows)
     }
 
     #[inline(always)]
@@ -154,10 +180,11 @@ impl Lanes for F64x8 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx512 {
     use std::arch::x86_64::{
-        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd,
-        _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd, _mm512_loadu_pd, _mm512_mask_min_pd,
-        _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd,
-        _mm512_sqrt_pd, _mm512_store_pd, _mm512_sub_pd,
+        __m512d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_loadu_pd, _mm512_add_pd, _mm512_castpd256_pd512,
+        _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_insertf64x4,
+        _mm512_load_pd, _mm512_loadu_pd, _mm512_mask_min_pd, _mm512_max_pd, _mm512_min_pd,
+        _mm512_mul_pd, _mm512_set1_pd, _mm512_setzero_pd, _mm512_shuffle_f64x2, _mm512_sqrt_pd,
+        _mm512_store_pd, _mm512_sub_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
     };
 
     use super::{F64x8, Lanes};
@@ -189,6 +216,69 @@ pub mod avx512 {
             let mut values = F64x8([0.0; 8]);
             unsafe { _mm512_store_pd(values.0.as_mut_ptr(), self.0) };
             values
+        }
+
+        #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            // Rows 0 and 2, 1 and 3, 4 and 6, 5 and 7. (No closures: they might be called.)
+            macro_rules! two {
+                ($a:expr) => {
+                    _mm512_insertf64x4::<1>(
+                        _mm512_castpd256_pd512(_mm256_loadu_pd(rows[$a].as_ptr())),
+                        _mm256_loadu_pd(rows[$a + 2].as_ptr()),
+                    )
+                };
+            }
+            let (a, b, c, d) = unsafe { (two!(0), two!(1), two!(4), two!(5)) };
+            unsafe {
+                let (a, b) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+                let (c, d) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+                [
+                    Self(_mm512_shuffle_f64x2::<0x88>(a, c)),
+                    Self(_mm512_shuffle_f64x2::<0x88>(b, d)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(a, c)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(b, d)),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn transposed(rows: [&[f64; 8]; 8]) -> [Self; 8] {
+            macro_rules! two {
+                ($unpack:ident, $a:expr) => {
+                    $unpack(
+                        _mm512_loadu_pd(rows[$a].as_ptr()),
+                        _mm512_loadu_pd(rows[$a + 1].as_ptr()),
+                    )
+                };
+            }
+            // Numbers 0 and 4, 2 and 6 (or 1 and 5, 3 and 7) of four rows each, then of all.
+            macro_rules! four {
+                ($a:expr, $b:expr) => {{
+                    let (a, b) = ($a, $b);
+                    (
+                        _mm512_shuffle_f64x2::<0x88>(a, b),
+                        _mm512_shuffle_f64x2::<0xdd>(a, b),
+                    )
+                }};
+            }
+            let ((n0, n4), (n2, n6), (n1, n5), (n3, n7)) = unsafe {
+                let (a, c) = four!(two!(_mm512_unpacklo_pd, 0), two!(_mm512_unpacklo_pd, 2));
+                let (e, g) = four!(two!(_mm512_unpacklo_pd, 4), two!(_mm512_unpacklo_pd, 6));
+                let (b, d) = four!(two!(_mm512_unpackhi_pd, 0), two!(_mm512_unpackhi_pd, 2));
+                let (f, h) = four!(two!(_mm512_unpackhi_pd, 4), two!(_mm512_unpackhi_pd, 6));
+                (four!(a, e), four!(c, g), four!(b, f), four!(d, h))
+            };
+            [
+                Self(n0),
+                Self(n1),
+                Self(n2),
+                Self(n3),
+                Self(n4),
+                Self(n5),
+                Self(n6),
+                Self(n7),
+            ]
         }
 
         #[inline(always)]
@@ -256,10 +346,11 @@ pub mod avx512 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-        _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd,
-        _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
-        _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_sub_pd,
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm_loadu_pd, _mm256_add_pd, _mm256_blendv_pd,
+        _mm256_castpd128_pd256, _mm256_cmp_pd, _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd,
+        _mm256_insertf128_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd,
+        _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd, _mm256_setzero_pd, _mm256_sqrt_pd,
+        _mm256_store_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
     };
 
     use super::{F64x8, Lanes};
@@ -303,6 +394,49 @@ pub mod avx2 {
                 _mm256_store_pd(pointer.add(4), self.1);
             }
             values
+        }
+
+        #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            // Numbers c and c + 1 of rows a and a + 2. (No closures: they would be called.)
+            macro_rules! two {
+                ($a:expr, $c:expr) => {
+                    _mm256_insertf128_pd::<1>(
+                        _mm256_castpd128_pd256(_mm_loadu_pd(&raw const rows[$a][$c])),
+                        _mm_loadu_pd(&raw const rows[$a + 2][$c]),
+                    )
+                };
+            }
+            macro_rules! columns {
+                ($unpack:ident, $c:expr) => {
+                    Self(
+                        $unpack(two!(0, $c), two!(1, $c)),
+                        $unpack(two!(4, $c), two!(5, $c)),
+                    )
+                };
+            }
+            unsafe {
+                [
+                    columns!(_mm256_unpacklo_pd, 0),
+                    columns!(_mm256_unpackhi_pd, 0),
+                    columns!(_mm256_unpacklo_pd, 2),
+                    columns!(_mm256_unpackhi_pd, 2),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn transposed(rows: [&[f64; 8]; 8]) -> [Self; 8] {
+            let mut halves = [[&[0.0; 4]; 8]; 2];
+            for k in 0..8 {
+                let [low, high] = rows[k].as_chunks().0 else {
+                    unreachable!("eight are two times four")
+                };
+                (halves[0][k], halves[1][k]) = (low, high);
+            }
+            let [a, b, c, d] = Self::columns(halves[0]);
+            let [e, f, g, h] = Self::columns(halves[1]);
+            [a, b, c, d, e, f, g, h]
         }
 
         #[inline(always)]
@@ -388,6 +522,39 @@ pub mod avx2 {
                 {
                     (low | high << 4) as u8
                 }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dispatch::{Vectorised, available};
+
+    struct Turn<'a>(&'a [[f64; LANES]; LANES]);
+
+    impl Vectorised for Turn<'_> {
+        type Output = (Vec<F64x8>, Vec<F64x8>);
+
+        #[inline(always)]
+        fn run<V: Lanes>(self) -> Self::Output {
+            let whole = V::transposed(self.0.each_ref());
+            let half = V::columns(self.0.each_ref().map(|row| row[2..].first_chunk().unwrap()));
+            (whole.map(V::store).to_vec(), half.map(V::store).to_vec())
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_on_all_instruction_sets() {
+        let mut numbers = (0_u8..).map(f64::from);
+        let rows: [[f64; LANES]; LANES] =
+            std::array::from_fn(|_| std::array::from_fn(|_| numbers.next().unwrap()));
+        for set in available() {
+            let (whole, half) = set.run(Turn(&rows));
+            for k in 0..LANES {
+                assert!((0..LANES).all(|c| whole[c].0[k] == rows[k][c]));
+                assert!((0..4).all(|c| half[c].0[k] == rows[k][c + 2]));
             }
         }
     }

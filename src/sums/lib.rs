@@ -3,7 +3,7 @@
 //!
 //! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
-//! outside the support adds an exact zero.
+//! outside the support adds an exact zero. Lists of the total form last, so that each lane may meet neighbours of its own.
 
 pub mod corrected;
 pub mod face;

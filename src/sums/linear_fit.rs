@@ -225,7 +225,7 @@ impl<S: PairScale> Vectorised for LinearFit<'_, S> {
         let h = if S::VARIABLE {
             around.h::<V>().store()
         } else {
-            around.sources.scale.length(zero, 0.0).store()
+            around.sources.scale.length(zero, zero).store()
         };
         sums.fit(&store_all(&velocity), &h, self.dimension)
     }
