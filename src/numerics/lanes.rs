@@ -24,6 +24,10 @@ pub trait Lanes: Copy {
     fn read(values: &[f64; LANES]) -> Self;
     /// To memory.
     fn store(self) -> F64x8;
+    /// Eight rows of four numbers by columns: number c of row k is lane k of vector c.
+    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4];
+    /// The same of rows of eight.
+    fn transposed(rows: [&[f64; LANES]; LANES]) -> [Self; LANES];
     /// Sum of each lane.
     #[must_use]
     fn add(self, other: Self) -> Self;
@@ -56,21 +60,6 @@ pub trait Lanes: Copy {
     fn min_where_positive(self, other: Self, mask: Self) -> Self;
     /// Bit k: lane k is smaller than `other`'s.
     fn less_than(self, other: Self) -> u8;
-
-    /// The first numbers of eight rows, the second, the third and the fourth.
-    #[inline(always)]
-    #[must_use]
-    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4] {
-        let mut columns = [Self::splat(0.0); 4];
-        for c in 0..4 {
-            let mut column = [0.0; LANES];
-            for k in 0..LANES {
-                column[k] = rows[k][c];
-            }
-            columns[c] = Self::read(&column);
-        }
-        columns
-    }
 
     /// Each lane rounded.
     #[inline(always)]
@@ -136,6 +125,18 @@ pub static MEMBERS: [[u8; LANES]; 256] = {
     table
 };
 
+/// Eight rows by columns, in plain memory.
+#[inline(always)]
+fn by_columns<const N: usize>(rows: [&[f64; N]; LANES]) -> [F64x8; N] {
+    let mut all = [F64x8([0.0; LANES]); N];
+    for k in 0..LANES {
+        for c in 0..N {
+            all[c].0[k] = rows[k][c];
+        }
+    }
+    all
+}
+
 /// A loop, since what array methods call may be compiled apart from the vector code.
 macro_rules! each_lane {
     ($k:ident => $value:expr) => {{
@@ -166,6 +167,16 @@ impl Lanes for F64x8 {
     #[inline(always)]
     fn store(self) -> F64x8 {
         self
+    }
+
+    #[inline(always)]
+    fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4] {
+        by_columns(rows)
+    }
+
+    #[inline(always)]
+    fn transposed(rows: [&[f64; LANES]; LANES]) -> [Self; LANES] {
+        by_columns(rows)
     }
 
     #[inline(always)]
@@ -274,6 +285,69 @@ pub mod avx512 {
         }
 
         #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            // Rows 0 and 2, 1 and 3, 4 and 6, 5 and 7. (No closures: they might be called.)
+            macro_rules! two {
+                ($a:expr) => {
+                    _mm512_insertf64x4::<1>(
+                        _mm512_castpd256_pd512(_mm256_loadu_pd(rows[$a].as_ptr())),
+                        _mm256_loadu_pd(rows[$a + 2].as_ptr()),
+                    )
+                };
+            }
+            let (a, b, c, d) = unsafe { (two!(0), two!(1), two!(4), two!(5)) };
+            unsafe {
+                let (a, b) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
+                let (c, d) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
+                [
+                    Self(_mm512_shuffle_f64x2::<0x88>(a, c)),
+                    Self(_mm512_shuffle_f64x2::<0x88>(b, d)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(a, c)),
+                    Self(_mm512_shuffle_f64x2::<0xdd>(b, d)),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn transposed(rows: [&[f64; 8]; 8]) -> [Self; 8] {
+            macro_rules! two {
+                ($unpack:ident, $a:expr) => {
+                    $unpack(
+                        _mm512_loadu_pd(rows[$a].as_ptr()),
+                        _mm512_loadu_pd(rows[$a + 1].as_ptr()),
+                    )
+                };
+            }
+            // Numbers 0 and 4, 2 and 6 (or 1 and 5, 3 and 7) of four rows each, then of all.
+            macro_rules! four {
+                ($a:expr, $b:expr) => {{
+                    let (a, b) = ($a, $b);
+                    (
+                        _mm512_shuffle_f64x2::<0x88>(a, b),
+                        _mm512_shuffle_f64x2::<0xdd>(a, b),
+                    )
+                }};
+            }
+            let ((n0, n4), (n2, n6), (n1, n5), (n3, n7)) = unsafe {
+                let (a, c) = four!(two!(_mm512_unpacklo_pd, 0), two!(_mm512_unpacklo_pd, 2));
+                let (e, g) = four!(two!(_mm512_unpacklo_pd, 4), two!(_mm512_unpacklo_pd, 6));
+                let (b, d) = four!(two!(_mm512_unpackhi_pd, 0), two!(_mm512_unpackhi_pd, 2));
+                let (f, h) = four!(two!(_mm512_unpackhi_pd, 4), two!(_mm512_unpackhi_pd, 6));
+                (four!(a, e), four!(c, g), four!(b, f), four!(d, h))
+            };
+            [
+                Self(n0),
+                Self(n1),
+                Self(n2),
+                Self(n3),
+                Self(n4),
+                Self(n5),
+                Self(n6),
+                Self(n7),
+            ]
+        }
+
+        #[inline(always)]
         fn add(self, other: Self) -> Self {
             Self(unsafe { _mm512_add_pd(self.0, other.0) })
         }
@@ -332,29 +406,6 @@ pub mod avx512 {
         }
 
         #[inline(always)]
-        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
-            macro_rules! two {
-                ($a:expr, $b:expr) => {
-                    _mm512_insertf64x4::<1>(
-                        _mm512_castpd256_pd512(_mm256_loadu_pd(rows[$a].as_ptr())),
-                        _mm256_loadu_pd(rows[$b].as_ptr()),
-                    )
-                };
-            }
-            unsafe {
-                let (a, b, c, d) = (two!(0, 2), two!(1, 3), two!(4, 6), two!(5, 7));
-                let (even, odd) = (_mm512_unpacklo_pd(a, b), _mm512_unpackhi_pd(a, b));
-                let (even_up, odd_up) = (_mm512_unpacklo_pd(c, d), _mm512_unpackhi_pd(c, d));
-                [
-                    Self(_mm512_shuffle_f64x2::<0x88>(even, even_up)),
-                    Self(_mm512_shuffle_f64x2::<0x88>(odd, odd_up)),
-                    Self(_mm512_shuffle_f64x2::<0xdd>(even, even_up)),
-                    Self(_mm512_shuffle_f64x2::<0xdd>(odd, odd_up)),
-                ]
-            }
-        }
-
-        #[inline(always)]
         fn narrow(self) -> [f32; 8] {
             let mut narrow = [0.0; 8];
             unsafe { _mm256_storeu_ps(narrow.as_mut_ptr(), _mm512_cvtpd_ps(self.0)) };
@@ -396,12 +447,12 @@ pub mod avx512 {
 #[cfg(target_arch = "x86_64")]
 pub mod avx2 {
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm_loadl_epi64, _mm_storeu_ps, _mm256_add_pd,
-        _mm256_blendv_pd, _mm256_cmp_pd, _mm256_cmp_ps, _mm256_cvtepu8_epi32, _mm256_cvtpd_ps,
-        _mm256_div_pd, _mm256_fmadd_pd, _mm256_fmadd_ps, _mm256_fnmadd_pd, _mm256_load_pd,
-        _mm256_loadu_pd, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_pd, _mm256_min_pd,
-        _mm256_movemask_pd, _mm256_movemask_ps, _mm256_mul_pd, _mm256_mul_ps,
-        _mm256_permute2f128_pd, _mm256_permutevar8x32_epi32, _mm256_set1_pd, _mm256_set1_ps,
+        __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm_loadl_epi64, _mm_loadu_pd, _mm_storeu_ps,
+        _mm256_add_pd, _mm256_blendv_pd, _mm256_castpd128_pd256, _mm256_cmp_pd, _mm256_cmp_ps,
+        _mm256_cvtepu8_epi32, _mm256_cvtpd_ps, _mm256_div_pd, _mm256_fmadd_pd, _mm256_fmadd_ps,
+        _mm256_fnmadd_pd, _mm256_insertf128_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_loadu_ps,
+        _mm256_loadu_si256, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_movemask_ps,
+        _mm256_mul_pd, _mm256_mul_ps, _mm256_permutevar8x32_epi32, _mm256_set1_pd, _mm256_set1_ps,
         _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_si256, _mm256_sub_pd,
         _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
     };
@@ -447,6 +498,49 @@ pub mod avx2 {
                 _mm256_store_pd(pointer.add(4), self.1);
             }
             values
+        }
+
+        #[inline(always)]
+        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
+            // Numbers c and c + 1 of rows a and a + 2. (No closures: they would be called.)
+            macro_rules! two {
+                ($a:expr, $c:expr) => {
+                    _mm256_insertf128_pd::<1>(
+                        _mm256_castpd128_pd256(_mm_loadu_pd(&raw const rows[$a][$c])),
+                        _mm_loadu_pd(&raw const rows[$a + 2][$c]),
+                    )
+                };
+            }
+            macro_rules! columns {
+                ($unpack:ident, $c:expr) => {
+                    Self(
+                        $unpack(two!(0, $c), two!(1, $c)),
+                        $unpack(two!(4, $c), two!(5, $c)),
+                    )
+                };
+            }
+            unsafe {
+                [
+                    columns!(_mm256_unpacklo_pd, 0),
+                    columns!(_mm256_unpackhi_pd, 0),
+                    columns!(_mm256_unpacklo_pd, 2),
+                    columns!(_mm256_unpackhi_pd, 2),
+                ]
+            }
+        }
+
+        #[inline(always)]
+        fn transposed(rows: [&[f64; 8]; 8]) -> [Self; 8] {
+            let mut halves = [[&[0.0; 4]; 8]; 2];
+            for k in 0..8 {
+                let [low, high] = rows[k].as_chunks().0 else {
+                    unreachable!("eight are two times four")
+                };
+                (halves[0][k], halves[1][k]) = (low, high);
+            }
+            let [a, b, c, d] = Self::columns(halves[0]);
+            let [e, f, g, h] = Self::columns(halves[1]);
+            [a, b, c, d, e, f, g, h]
         }
 
         #[inline(always)]
@@ -532,35 +626,6 @@ pub mod avx2 {
                 {
                     (low | high << 4) as u8
                 }
-            }
-        }
-
-        #[inline(always)]
-        fn columns(rows: [&[f64; 4]; 8]) -> [Self; 4] {
-            macro_rules! four {
-                ($first:expr) => {{
-                    let a = _mm256_loadu_pd(rows[$first].as_ptr());
-                    let b = _mm256_loadu_pd(rows[$first + 1].as_ptr());
-                    let c = _mm256_loadu_pd(rows[$first + 2].as_ptr());
-                    let d = _mm256_loadu_pd(rows[$first + 3].as_ptr());
-                    let (even, odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
-                    let (even_up, odd_up) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
-                    [
-                        _mm256_permute2f128_pd::<0x20>(even, even_up),
-                        _mm256_permute2f128_pd::<0x20>(odd, odd_up),
-                        _mm256_permute2f128_pd::<0x31>(even, even_up),
-                        _mm256_permute2f128_pd::<0x31>(odd, odd_up),
-                    ]
-                }};
-            }
-            unsafe {
-                let (low, high) = (four!(0), four!(4));
-                [
-                    Self(low[0], high[0]),
-                    Self(low[1], high[1]),
-                    Self(low[2], high[2]),
-                    Self(low[3], high[3]),
-                ]
             }
         }
 
@@ -676,6 +741,33 @@ mod tests {
                 let set_bits = (0..16).filter(|k| bits >> k & 1 == 1);
                 let wanted: Vec<u32> = [99; 3].into_iter().chain(set_bits).collect();
                 assert_eq!(list, &wanted, "{}", set.name());
+            }
+        }
+    }
+
+    struct Turn<'a>(&'a [[f64; LANES]; LANES]);
+
+    impl Vectorised for Turn<'_> {
+        type Output = (Vec<F64x8>, Vec<F64x8>);
+
+        #[inline(always)]
+        fn run<V: Lanes>(self) -> Self::Output {
+            let whole = V::transposed(self.0.each_ref());
+            let half = V::columns(self.0.each_ref().map(|row| row[2..].first_chunk().unwrap()));
+            (whole.map(V::store).to_vec(), half.map(V::store).to_vec())
+        }
+    }
+
+    #[test]
+    fn rows_become_columns_on_all_instruction_sets() {
+        let mut numbers = (0_u8..).map(f64::from);
+        let rows: [[f64; LANES]; LANES] =
+            std::array::from_fn(|_| std::array::from_fn(|_| numbers.next().unwrap()));
+        for set in available() {
+            let (whole, half) = set.run(Turn(&rows));
+            for k in 0..LANES {
+                assert!((0..LANES).all(|c| whole[c].0[k] == rows[k][c]));
+                assert!((0..4).all(|c| half[c].0[k] == rows[k][c + 2]));
             }
         }
     }

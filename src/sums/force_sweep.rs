@@ -161,8 +161,10 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
             indices,
             forces: from_mirrors,
         } = self.from_mirrors;
-        let chunk = self.chunk.iter();
-        for (cluster, neighbours, among) in chunk.filter(|(_, _, among)| side.takes(among.halo)) {
+        let chunk = self.chunk.iter().enumerate();
+        for (number, (cluster, neighbours, among)) in
+            chunk.filter(|(_, (_, _, among))| side.takes(among.halo))
+        {
             if elsewhere[cluster.group] {
                 continue;
             }
@@ -182,7 +184,10 @@ impl<S: PairScale, R: PairStress, const TERMS: bool> Vectorised for MomentumChun
                 } else {
                     neighbours
                 };
-                let around = self.motion.around(cluster.receivers, neighbours);
+                let mut around = self.motion.around(cluster.receivers, neighbours);
+                if !alone {
+                    around = around.close(self.chunk.close(number));
+                }
                 let sums = Momentum::<S, R, TERMS> {
                     around,
                     stresses,

@@ -120,15 +120,10 @@ pub(crate) struct SoftSquare<'a, V, R> {
 }
 
 impl<V: Lanes, R: PairStress> Divisor<V> for SoftSquare<'_, V, R> {
-    type Parts = ();
-
     #[inline(always)]
-    fn before(&self) {}
-
-    #[inline(always)]
-    fn of(&self, index: usize, square: V, h: V) -> (Option<V>, ()) {
+    fn of(&self, index: usize, square: V, h: V) -> Option<V> {
         let density = V::splat(self.stresses[index].density());
-        (Some(soft(square, h).mul(self.rho.add(density))), ())
+        Some(soft(square, h).mul(self.rho.add(density)))
     }
 }
 

@@ -40,6 +40,7 @@ impl<'a, S: PairScale> Sources<'a, S> {
             sources: self,
             receivers,
             neighbours,
+            close: &[],
         }
     }
 }
@@ -50,9 +51,18 @@ pub struct Neighbourhood<'a, S> {
     pub(crate) sources: Sources<'a, S>,
     pub(crate) receivers: [u32; LANES],
     pub(crate) neighbours: &'a [u32],
+    /// What each lane itself has to sum, as places in `neighbours`; empty where that is not listed.
+    pub(crate) close: &'a [[u16; LANES]],
 }
 
 impl<'a, S: PairScale> Neighbourhood<'a, S> {
+    /// With what each lane itself has to sum, as places among the neighbours.
+    #[inline(always)]
+    #[must_use]
+    pub fn close(self, close: &'a [[u16; LANES]]) -> Self {
+        Self { close, ..self }
+    }
+
     /// Position (m) and velocity (m/s) of the receivers.
     #[inline(always)]
     pub(crate) fn motion<V: Lanes>(&self) -> ([V; 3], [V; 3]) {
@@ -91,10 +101,7 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
             h: self.h(),
             divisor,
             done: 0,
-            next: (
-                Divided::of::<S>(Distance::of(one), one, None),
-                divisor.before(),
-            ),
+            next: Divided::of::<S>(Distance::of(one), one, None),
             after: Distance::of(one),
         };
         if !self.neighbours.is_empty() {
@@ -109,30 +116,19 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
 
 /// Divisor of a sum over pairs beside their distances.
 pub(crate) trait Divisor<V>: Copy {
-    /// What it is made of, for the sum.
-    type Parts: Copy;
-
-    /// Any parts, before the first neighbour.
-    fn before(&self) -> Self::Parts;
-
     /// Of the neighbour of this index, squares of distances (m²) and `h_ij` (m), if any.
-    fn of(&self, index: usize, square: V, h: V) -> (Option<V>, Self::Parts);
+    fn of(&self, index: usize, square: V, h: V) -> Option<V>;
 }
 
 impl<V> Divisor<V> for () {
-    type Parts = ();
-
     #[inline(always)]
-    fn before(&self) {}
-
-    #[inline(always)]
-    fn of(&self, _: usize, _: V, _: V) -> (Option<V>, ()) {
-        (None, ())
+    fn of(&self, _: usize, _: V, _: V) -> Option<V> {
+        None
     }
 }
 
 /// Eight receivers and one neighbour.
-pub(crate) struct Pair<'a, V, P> {
+pub(crate) struct Pair<'a, V> {
     /// Index of the neighbour among all sources.
     pub(crate) index: usize,
     /// The neighbour.
@@ -145,8 +141,6 @@ pub(crate) struct Pair<'a, V, P> {
     pub(crate) h: V,
     /// The inverse of the divisor, 1 without one.
     pub(crate) beside: V,
-    /// What the divisor is made of.
-    pub(crate) parts: P,
 }
 
 /// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
@@ -157,7 +151,7 @@ pub(crate) struct Pairs<'a, V, S, D: Divisor<V>> {
     h: V,
     divisor: D,
     done: usize,
-    next: (Divided<V>, D::Parts),
+    next: Divided<V>,
     after: Distance<V>,
 }
 
@@ -183,17 +177,16 @@ impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
     }
 
     #[inline(always)]
-    fn divide(&self, ahead: usize, far: Distance<V>) -> (Divided<V>, D::Parts) {
+    fn divide(&self, ahead: usize, far: Distance<V>) -> Divided<V> {
         let index = self.index(ahead);
         let Sources { lengths, scale, .. } = self.around.sources;
         let h = scale.length(self.h, V::splat(length::<S>(lengths, index)));
-        let (divisor, parts) = self.divisor.of(index, far.square, h);
-        (Divided::of::<S>(far, h, divisor), parts)
+        Divided::of::<S>(far, h, self.divisor.of(index, far.square, h))
     }
 }
 
 impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> {
-    type Item = Pair<'a, V, D::Parts>;
+    type Item = Pair<'a, V>;
 
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
@@ -205,7 +198,7 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
         if self.done == self.around.neighbours.len() {
             return None;
         }
-        let (index, (now, parts)) = (self.index(0), self.next);
+        let (index, now) = (self.index(0), self.next);
         let Distance { square, distance } = now.far;
         self.next = self.divide(1, self.after);
         self.after = self.distance(2);
@@ -222,7 +215,6 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
             kernel: scale.kernel(distance, now.inverse_h),
             h: scale.length(self.h, V::splat(length::<S>(lengths, index))),
             beside: now.beside,
-            parts,
         })
     }
 }

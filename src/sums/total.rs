@@ -14,8 +14,10 @@
 //! `Σ V_i T_i σ_i T_iᵀ`, which is none. A body that has not deformed has `T = M B` and `N = B` of the corrected form.
 
 mod forces;
+mod pairs;
 
 pub use forces::TotalRecord;
+pub use pairs::Close;
 
 use super::corrected::{add_moment, spin};
 use super::limiter::Limiter;
@@ -26,6 +28,7 @@ use numerics::lane_matrix::{
     Symmetric, along, cross, dot, faded, full, product, store_all, times, transposed,
 };
 use numerics::lanes::{F64x8, LANES, Lanes};
+use pairs::{Pairs, at};
 
 /// e⁴ of the fade of rates, at e = .15: as the deformation gradient is exact up to faces, rates have to be nearly so.
 const FADE: f64 = 0.15 * 0.15 * 0.15 * 0.15;
@@ -85,8 +88,8 @@ pub struct TotalGradient<'a, S> {
     pub around: Neighbourhood<'a, S>,
     /// What the initial pairs of particles have told, by place.
     pub initial: &'a [InitialSums],
-    /// Positions of all particles and images (m).
-    pub positions: &'a [[f64; 3]],
+    /// Positions of all particles and images (m), and whatever.
+    pub positions: &'a [[f64; 4]],
     /// Number of dimensions.
     pub dimension: usize,
 }
@@ -151,19 +154,21 @@ impl<S: PairScale> TotalGradient<'_, S> {
             place: [zero; 3],
             farthest: zero,
         };
-        for pair in self.around.pairs(&initial) {
-            let (source, there) = (pair.source, &self.positions[pair.index]);
-            let volume = V::splat(source.volume);
-            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let mut steep = pair.separation.r;
+        for pair in Pairs::new(self.around, &initial, [self.positions.len()]) {
+            // SAFETY: lists name places of images, each of which has its position.
+            let [x, y, z, _] = V::columns(unsafe { at(self.positions, &pair.places) });
+            let there = [x, y, z];
+            let inverse = one.div(pair.distance);
+            let factor = inverse.mul(pair.volume).mul(pair.kernel.slope);
+            let mut steep = pair.r;
             for part in &mut steep {
                 *part = part.mul(factor);
             }
-            let weight = factor.mul(pair.separation.square);
+            let weight = factor.mul(pair.square);
             let mut apart = zero;
             for a in 0..3 {
-                let v = V::splat(source.velocity[a]).sub(velocity[a]);
-                let x = V::splat(there[a]).sub(position[a]);
+                let v = pair.velocity[a].sub(velocity[a]);
+                let x = there[a].sub(position[a]);
                 apart = x.mul_add(x, apart);
                 sums.velocity[a] = v.mul_add(weight, sums.velocity[a]);
                 sums.place[a] = x.neg_mul_add(weight, sums.place[a]);

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::close::CloseLists;
 use super::cluster::{Among, Cluster, Lists, around};
 use super::facts::{HALO, MIRROR, MOVING};
 use super::foreign::GroupRanges;
@@ -15,7 +16,7 @@ use super::pairs::PairList;
 use super::sequence::Sequence;
 use super::watch::Watch;
 use numerics::dispatch::{Vectorised, instructions};
-use numerics::lanes::Lanes;
+use numerics::lanes::{LANES, Lanes};
 
 /// Clusters and neighbour lists of one task.
 #[derive(Debug, Clone, Default)]
@@ -27,9 +28,18 @@ pub struct Chunk {
     lists: Lists,
     /// Neighbours that [`ClusterLists::part`] has taken out of them; empty without self-contact.
     split: Split,
+    /// What each lane itself sums, where [`ClusterLists::list_close`] has listed that.
+    close: CloseLists,
 }
 
 impl Chunk {
+    /// What the lanes of the cluster of this number have to sum, as places in its list, row by row; empty where that is not listed.
+    #[inline]
+    #[must_use]
+    pub fn close(&self, cluster: usize) -> &[[u16; LANES]] {
+        self.close.of(cluster)
+    }
+
     /// The clusters, each with its neighbours in canonical order and what is among those.
     pub fn iter(&self) -> impl Iterator<Item = (&Cluster, &[u32], Among)> {
         self.lists.iter()
@@ -92,7 +102,9 @@ impl Vectorised for Build<'_> {
                     neighbours,
                 },
             split: _,
+            close,
         } = self.chunk;
+        close.clear();
         let (sequence, lengths) = (self.sequence, self.lengths);
         let Lengths {
             longest,
@@ -320,6 +332,20 @@ impl ClusterLists {
         });
     }
 
+    /// Lists for each receiver by itself which of its cluster's neighbours it sums: `near` writes for each neighbour of a
+    /// cluster a byte with a bit for each lane that does.
+    pub(super) fn list_close(&mut self, near: impl Fn(&Cluster, &[u32], &mut Vec<u8>) + Sync) {
+        let chunks = self.chunks[..self.used].par_iter_mut();
+        chunks.with_max_len(CHUNKS_AT_ONCE).for_each(|chunk| {
+            let Chunk { lists, close, .. } = chunk;
+            close.clear();
+            for (cluster, list, _) in lists.iter() {
+                close.push(cluster, list, &near);
+            }
+            close.fit();
+        });
+    }
+
     /// Takes strangers out of the lists. They become foreign neighbours.
     pub fn part(&mut self, membership: &Membership) {
         let chunks = self.chunks[..self.used].par_iter_mut();
@@ -352,6 +378,7 @@ impl ClusterLists {
                     + chunk.lists.memory()
                     + chunk.gatherer.memory()
                     + chunk.split.memory()
+                    + chunk.close.memory()
             })
             .sum()
     }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::cluster::Cluster;
 use super::clusters::{Chunk, ClusterLists, Lengths};
 use super::columns::ColumnGrid;
 use super::facts::{ImageFacts, ImageState};
@@ -314,6 +315,18 @@ impl Lists {
                 // same bits in any order: a largest number
                 .reduce(|| 0.0, f64::max);
         }
+    }
+
+    /// Lists for each receiver by itself which of its cluster's neighbours it sums, after [`Self::build`]: `near` is told the motion
+    /// and the smoothing lengths of all images, a cluster and its neighbours, and writes for each of these a byte with a bit
+    /// for each lane that does.
+    pub fn list_close(
+        &mut self,
+        near: impl Fn((&[MotionRecord], &[f64]), &Cluster, &[u32], &mut Vec<u8>) + Sync,
+    ) {
+        let all = (&*self.motion, self.sequence.smoothing_lengths());
+        self.clusters
+            .list_close(|cluster, list, bits| near(all, cluster, list, bits));
     }
 
     /// Takes those of another fragment out of the lists of the own group, before

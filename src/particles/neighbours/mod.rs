@@ -1,6 +1,7 @@
 //! Neighbour search: images sorted into thin columns, lists for clusters of eight receivers
 //! (own group) and for single receivers (foreign bodies).
 
+mod close;
 mod cluster;
 mod clusters;
 mod columns;

@@ -1,10 +1,8 @@
 //! The second sweep of the total form.
 
-use crate::momentum::{Forces, Momentum, PairStress, Viscous, soft};
-use crate::neighbourhood::{
-    Divisor, Neighbourhood, SMALLEST_SQUARE, Separation, gather, gather_all, records,
-};
-use crate::terms::TermSums;
+use super::pairs::{Pairs, columns};
+use crate::momentum::{Forces, Momentum, PairStress, Viscosity, soft};
+use crate::neighbourhood::{Neighbourhood, SMALLEST_SQUARE, gather, gather_all, records};
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{along, dot, store_all};
 use numerics::lanes::{F64x8, LANES, Lanes};
@@ -15,7 +13,7 @@ const LEAST_STRAIN: f64 = 1e-12;
 
 /// Record of the stress of a particle that its neighbours read.
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub struct TotalRecord {
     /// `Q`, row-major (Pa).
     pub stress: [f64; 9],
@@ -27,8 +25,8 @@ pub struct TotalRecord {
     pub viscous_speed: f64,
     /// Position (m).
     pub position: [f64; 3],
-    /// Deformation gradient, row-major.
-    pub deformation: [f64; 9],
+    /// Half the deformation gradient, row-major.
+    pub half_deformation: [f64; 9],
 }
 
 impl TotalRecord {
@@ -36,65 +34,12 @@ impl TotalRecord {
     /// `apart` (m) and are now `r` (m).
     #[must_use]
     pub fn pull(&self, other: &Self, apart: &[f64; 3], r: &[f64; 3]) -> f64 {
-        let mean = |c: usize| 0.5 * (self.deformation[c] + other.deformation[c]);
+        let mean = |c: usize| self.half_deformation[c] + other.half_deformation[c];
         let expected = |a: usize| (0..3).map(|b| mean(3 * a + b) * apart[b]).sum::<f64>();
         let square: f64 = r.iter().map(|x| x * x).sum();
         let beyond: f64 = (0..3).map(|a| r[a] * (r[a] - expected(a))).sum();
         let strain = beyond / square;
         (self.hourglass + other.hourglass) * (strain - strain.clamp(-LEAST_STRAIN, LEAST_STRAIN))
-    }
-}
-
-/// Distances now times `(r² + 0.01 h²) (ρ_i + ρ_j)`, whose inverse serves both.
-#[derive(Clone, Copy)]
-struct Apart<'a, V> {
-    /// Positions of the receivers (m).
-    position: [V; 3],
-    /// Their densities (kg/m³).
-    rho: V,
-    /// Stresses of all particles and images.
-    stresses: &'a [TotalRecord],
-}
-
-/// How far eight receivers are from one neighbour now.
-#[derive(Clone, Copy)]
-struct ApartNow<V> {
-    /// `r²` (m²), not below [`SMALLEST_SQUARE`].
-    square: V,
-    /// `r` (m).
-    distance: V,
-    /// `(r² + 0.01 h²) (ρ_i + ρ_j)` (kg/m).
-    soft: V,
-}
-
-impl<V: Lanes> Divisor<V> for Apart<'_, V> {
-    type Parts = ApartNow<V>;
-
-    #[inline(always)]
-    fn before(&self) -> ApartNow<V> {
-        ApartNow {
-            square: self.rho,
-            distance: self.rho,
-            soft: self.rho,
-        }
-    }
-
-    #[inline(always)]
-    fn of(&self, index: usize, _: V, h: V) -> (Option<V>, ApartNow<V>) {
-        let state = &self.stresses[index];
-        let mut r = self.position;
-        for a in 0..3 {
-            r[a] = r[a].sub(V::splat(state.position[a]));
-        }
-        let square = dot(&r, &r).max(V::splat(SMALLEST_SQUARE));
-        let distance = square.sqrt();
-        let soft = soft(square, h).mul(self.rho.add(V::splat(state.density)));
-        let parts = ApartNow {
-            square,
-            distance,
-            soft,
-        };
-        (Some(distance.mul(soft)), parts)
     }
 }
 
@@ -151,7 +96,7 @@ impl PairStress for TotalRecord {
         couple
     }
 
-    /// `dv/dt = V⁰_i/m_i Σ V⁰_j ((Q_i + Q_j) ∇W_ij − ρ_i ρ_j Π_ij |∇W_ij| x_ij/|x_ij|)`.
+    /// `dv/dt = V⁰_i/m_i Σ V⁰_j ((Q_i + Q_j) ∇W_ij − ρ_i ρ_j Π_ij |∇W_ij| x_ij/|x_ij|)`; no pair term acts.
     #[inline(always)]
     fn sum<V: Lanes, S: PairScale, const TERMS: bool>(sums: &Momentum<S, Self, TERMS>) -> Forces {
         let around = &sums.around;
@@ -159,85 +104,76 @@ impl PairStress for TotalRecord {
         if around.neighbours.is_empty() {
             return Forces::NONE;
         }
-        let (zero, least) = (V::splat(0.0), V::splat(LEAST_STRAIN));
+        let (zero, one, least) = (V::splat(0.0), V::splat(1.0), V::splat(LEAST_STRAIN));
         let (initial, velocity) = around.motion::<V>();
         let own = records(sums.stresses, &around.receivers);
         let position: [V; 3] = gather_all(&own, |record, a| record.position[a]);
         let hourglass: V = gather(&own, |record| record.hourglass);
-        let deformation: [V; 9] = gather_all(&own, |record, c| record.deformation[c]);
+        let density: V = gather(&own, |record| record.density);
+        let speed: V = gather(&own, |record| record.viscous_speed);
+        let deformation: [V; 9] = gather_all(&own, |record, c| record.half_deformation[c]);
         let motion = records(around.sources.records, &around.receivers);
         let specific_volume = gather::<V, _>(&motion, |record| record.volume / record.mass);
-        let viscous = Viscous::<V>::begin(
-            sums.viscosity,
-            gather(&own, |record| record.density),
-            gather(&own, |record| record.viscous_speed),
-        );
-        let terms = TermSums::<V, TERMS>::begin(&sums.terms, &around.receivers);
+        let Viscosity {
+            alpha,
+            beta,
+            negligible,
+        } = sums.viscosity;
+        let (alpha, twice_beta) = (V::splat(alpha), V::splat(2.0 * beta));
+        let rows: &[[[f64; 4]; 6]] = bytemuck::cast_slice(sums.stresses);
         let (mut force, mut slope) = ([zero; 3], [zero; 3]);
         let (mut power, mut fastest) = (zero, zero);
-        let divisor = Apart {
-            position,
-            rho: viscous.rho,
-            stresses: sums.stresses,
-        };
-        for pair in around.pairs_beside(&initial, divisor) {
-            let (source, kernel) = (pair.source, &pair.kernel);
-            let state = &sums.stresses[pair.index];
-            let shown = sums.terms.record::<TERMS>(pair.index);
-            let (mut r, mut v) = (position, velocity);
+        for pair in Pairs::new(*around, &initial, []) {
+            let theirs = records(rows, &pair.places);
+            let [x, y, z, f0] = columns(theirs, 3);
+            let r = [position[0].sub(x), position[1].sub(y), position[2].sub(z)];
+            let mut v = velocity;
             for a in 0..3 {
-                r[a] = r[a].sub(V::splat(state.position[a]));
-                v[a] = v[a].sub(V::splat(source.velocity[a]));
+                v[a] = v[a].sub(pair.velocity[a]);
             }
-            let ApartNow {
-                square,
-                distance,
-                soft,
-            } = pair.parts;
-            let density = V::splat(state.density);
-            let (inverse, beside) = (pair.beside.mul(soft), pair.beside.mul(distance));
-            let separation = Separation {
-                r,
-                square,
-                distance,
-                inverse,
-            };
-            let now = viscous.pair(
-                &terms,
-                (&separation, [pair.h; 2], beside),
-                &v,
-                (state.density, state.viscous_speed),
-                shown,
-            );
-            fastest = fastest.min_where_positive(now.mu, kernel.inside);
-            let pi = now.pi.mul(viscous.rho.mul(density));
+            let [q8, modulus, their_density, their_speed] = columns(theirs, 2);
+            // 1/R, 1/r and 1/((r² + 0.01 h²) (ρ_i + ρ_j)) by one division.
+            let (start, kernel) = (pair.distance, &pair.kernel);
+            let square = dot(&r, &r).max(V::splat(SMALLEST_SQUARE));
+            let distance = square.sqrt();
+            let soft = soft(square, pair.h);
+            let densities = density.add(their_density);
+            let both = soft.mul(densities);
+            let start_both = start.mul(both);
+            let all = one.div(start_both.mul(distance));
+            let of_start = all.mul(distance);
+            let (inverse, beside) = (all.mul(start_both), of_start.mul(start));
+            // Viscosity, as of all forms: ρ_i ρ_j Π_ij.
+            let closing = dot(&r, &v);
+            let mu = pair.h.mul(closing);
+            let mu = mu
+                .mul_add(beside.mul(densities), V::splat(negligible))
+                .min(zero);
+            fastest = fastest.min_where_positive(mu, kernel.inside);
+            let speeds = speed.add(their_speed);
+            let signal = speeds.neg_mul_add(alpha, mu.mul(twice_beta));
+            let signal = zero.min_where_positive(signal, speeds);
+            let share = beside.mul(soft).mul(density.mul(their_density));
+            let viscous = mu.mul(share).mul(signal);
             // What the pair is longer than the mean of both deformation gradients makes it, as a strain.
-            let mut mean = deformation;
+            let ([f1, f2, f3, f4], [f5, f6, f7, f8]) = (columns(theirs, 4), columns(theirs, 5));
+            let mut mean = [f0, f1, f2, f3, f4, f5, f6, f7, f8];
             for c in 0..9 {
-                mean[c] = mean[c].add(V::splat(state.deformation[c]));
+                mean[c] = mean[c].add(deformation[c]);
             }
-            let expected = along(&mean, &pair.separation.r);
-            let mut beyond = r;
-            for a in 0..3 {
-                beyond[a] = expected[a].neg_mul_add(V::splat(0.5), r[a]);
-            }
-            let strain = dot(&r, &beyond).mul(inverse).mul(inverse);
+            let expected = dot(&r, &along(&mean, &pair.r));
+            let strain = expected.neg_mul_add(inverse.mul(inverse), one);
             let strain = strain.sub(strain.min(least).max(zero.sub(least)));
-            let modulus = hourglass.add(V::splat(state.hourglass));
-            let central = modulus.mul_add(strain, zero.sub(pi));
-            let weight = V::splat(source.volume).mul(kernel.slope);
+            let central = hourglass.add(modulus).mul_add(strain, zero.sub(viscous));
+            let weight = pair.volume.mul(kernel.slope);
             let along_pair = central.mul(weight.mul(inverse));
-            power = now.closing.mul_add(along_pair, power);
-            let weight = weight.mul(pair.separation.inverse);
+            power = closing.mul_add(along_pair, power);
+            let weight = weight.mul(of_start.mul(both));
+            let ([q0, q1, q2, q3], [q4, q5, q6, q7]) = (columns(theirs, 0), columns(theirs, 1));
+            let pull = along(&[q0, q1, q2, q3, q4, q5, q6, q7, q8], &pair.r);
             for a in 0..3 {
-                force[a] = r[a].mul_add(along_pair, force[a]);
-            }
-            for b in 0..3 {
-                let steep = pair.separation.r[b].mul(weight);
-                slope[b] = slope[b].add(steep);
-                for a in 0..3 {
-                    force[a] = V::splat(state.stress[3 * a + b]).mul_add(steep, force[a]);
-                }
+                slope[a] = pair.r[a].mul_add(weight, slope[a]);
+                force[a] = pull[a].mul_add(weight, r[a].mul_add(along_pair, force[a]));
             }
         }
         let stress: [V; 9] = gather_all(&own, |record, c| record.stress[c]);
@@ -252,7 +188,7 @@ impl PairStress for TotalRecord {
                 .sub(power.mul(V::splat(0.5)).mul(specific_volume))
                 .store(),
             approach: zero.sub(fastest).store(),
-            correction: store_all(&terms.correction()),
+            correction: [F64x8([0.0; LANES]); 3],
         }
     }
 }

@@ -60,6 +60,11 @@ impl Corrected {
         &self.records
     }
 
+    /// True if all bodies are of the total form.
+    fn are_all_total(&self) -> bool {
+        self.total.as_ref().is_some_and(|total| total.holds_all())
+    }
+
     fn find_places(&mut self, owned: usize, lists: &Lists) {
         resize(&mut self.places, owned);
         let places = Scatter::new(&mut self.places);
@@ -83,6 +88,11 @@ impl Formulation for Corrected {
         lists: &Lists,
         step: &Step,
     ) {
+        // Of bodies of the total form images alone have their records here.
+        let alone = lists.sequence().is_alone();
+        if !alone || !self.are_all_total() {
+            scratch_of(&mut self.records, lists.images().len());
+        }
         let gradient = CorrectedGradients {
             dimension: sums.dimension,
             hourglass: HourglassUpdate {
@@ -94,10 +104,13 @@ impl Formulation for Corrected {
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, lists, step);
-        self.find_places(particles.owned(), lists);
+        if !alone {
+            self.find_places(particles.owned(), lists);
+        }
         if let Some(total) = &mut self.total {
             let mut shown = Shown {
                 records: &mut self.records,
+                spared: alone,
                 places: &self.places,
                 received: &[],
             };
@@ -132,6 +145,7 @@ impl Formulation for Corrected {
         if let Some(total) = &mut self.total {
             let shown = Shown {
                 records: &mut self.records,
+                spared: true,
                 places: &self.places,
                 received: &self.received,
             };
@@ -140,7 +154,10 @@ impl Formulation for Corrected {
     }
 
     fn scratch(&mut self, images: usize) -> &mut [u64] {
-        scratch_of(&mut self.records, images)
+        match &mut self.total {
+            Some(total) if total.holds_all() => total.scratch(images),
+            _ => scratch_of(&mut self.records, images),
+        }
     }
 
     fn payload(&mut self) -> Option<&mut dyn Payload> {

@@ -74,7 +74,7 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) {
-        for (cluster, neighbours, among) in self.chunk.iter() {
+        for (number, (cluster, neighbours, among)) in self.chunk.iter().enumerate() {
             if self.elsewhere[cluster.group] {
                 continue;
             }
@@ -86,6 +86,7 @@ impl<S: PairScale, G: Gradient> Vectorised for GradientChunk<'_, S, G> {
                 continue;
             }
             let around = self.motion.around(cluster.receivers, neighbours);
+            let around = around.close(self.chunk.close(number));
             let loose = || update.loose(cluster);
             let (gradient, show) = self.gradient.of::<V, S>(cluster, among, around, loose);
             update.apply::<V>(cluster, &gradient, neighbours.len(), &show);

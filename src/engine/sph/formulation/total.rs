@@ -25,10 +25,10 @@ use particles::{
 };
 use sums::corrected::CorrectedRecord;
 use sums::from_mirrors::FromMirrors;
-use sums::neighbourhood::Neighbourhood;
+use sums::neighbourhood::{Neighbourhood, Sources};
 use sums::step::{Side, Step};
 use sums::total::{
-    InitialPairs, InitialSums, LEAST_DETERMINANT, Total, TotalGradient, TotalRecord,
+    Close, InitialPairs, InitialSums, LEAST_DETERMINANT, Total, TotalGradient, TotalRecord,
 };
 use sums::with_scale;
 
@@ -57,7 +57,7 @@ pub struct TotalBodies {
     /// True if these are of the lists before.
     is_initial_due: bool,
     /// Positions of the images of the lists (m).
-    positions: Vec<[f64; 3]>,
+    positions: Vec<[f64; 4]>,
     from_mirrors: Vec<FromMirrors>,
     mirrors: Mirrors,
     /// Images that the lists are of: those of this rank's particles by their initial positions, and those of the halo.
@@ -92,6 +92,8 @@ struct Listed {
 pub struct Shown<'a> {
     /// Records in the order of the lists.
     pub records: &'a mut [CorrectedRecord],
+    /// True if nobody reads those that the first sweep would write.
+    pub spared: bool,
     /// Places of the records of this rank's particles.
     pub places: &'a [u32],
     /// Those of halo particles.
@@ -149,6 +151,16 @@ impl TotalBodies {
         self.others.iter().all(|&other| other)
     }
 
+    /// True if all bodies are of this form.
+    pub(super) fn holds_all(&self) -> bool {
+        !self.others.contains(&true)
+    }
+
+    /// Memory for so many images that is free until [`Self::rates`], in words.
+    pub(super) fn scratch(&mut self, images: usize) -> &mut [u64] {
+        scratch_of(&mut self.records, images)
+    }
+
     /// Why a body has left the form, as far as this process knows.
     #[must_use]
     pub fn tear(&self, body: usize) -> Option<Tear> {
@@ -192,7 +204,8 @@ impl TotalBodies {
         self.lists
             .refresh(&mut self.positions, |position, motion, image| {
                 let (slot, mirror_mask) = (image.slot(), image.mirror_mask());
-                *position = mirrors.reflect_position(&particles.position[slot], mirror_mask);
+                let [x, y, z] = mirrors.reflect_position(&particles.position[slot], mirror_mask);
+                *position = [x, y, z, 0.0];
                 motion.velocity =
                     Mirrors::reflect_vector(&particles.predicted_velocity[slot], mirror_mask);
             });
@@ -253,6 +266,7 @@ impl TotalBodies {
         }
         resize(&mut self.records, self.lists.images().len());
         if std::mem::take(&mut self.is_initial_due) {
+            self.list_close(sums);
             self.sum_initial_pairs(sums);
         }
         self.farthest.store(0, Relaxed);
@@ -266,8 +280,7 @@ impl TotalBodies {
             modulus: Scatter::new(&mut particles.hourglass_modulus),
             deformation: Scatter::new(&mut particles.deformation_gradient),
             records: Scatter::new(&mut self.records),
-            shown: Scatter::new(shown.records),
-            places: shown.places,
+            shown: (!shown.spared).then(|| (Scatter::new(shown.records), shown.places)),
             predicted_density: &particles.predicted_density,
             norm: Scatter::new(&mut particles.correction_norm),
             leaving: &self.leaving,
@@ -275,6 +288,18 @@ impl TotalBodies {
         };
         let points = (material_points!(particles), records_of!(particles));
         strain(&gradient, sums, points, &self.lists, step);
+    }
+
+    /// Lists the neighbours of each particle by itself.
+    fn list_close(&mut self, sums: &Sums) {
+        let set = instructions();
+        with_scale!(sums.scale, scale => self.lists.list_close(
+            |(records, lengths), cluster, neighbours, bits| {
+                let sources = Sources { records, lengths, scale };
+                let around = sources.around(cluster.receivers, neighbours);
+                set.run(Close { around, bits });
+            },
+        ));
     }
 
     /// Sums over the initial neighbours of each particle of the lists.
@@ -326,7 +351,10 @@ impl TotalBodies {
                     density: record.density,
                     viscous_speed: record.viscous_speed,
                     position: mirrors.reflect_position(&positions[slot], mirror_mask),
-                    deformation: Mirrors::reflect_tensor(&deformations[slot], mirror_mask),
+                    half_deformation: half(&Mirrors::reflect_tensor(
+                        &deformations[slot],
+                        mirror_mask,
+                    )),
                 }
             },
         );
@@ -476,7 +504,7 @@ impl TotalBodies {
             + mirrors
             + self.records.capacity() * size_of::<TotalRecord>()
             + self.initial.capacity() * size_of::<InitialSums>()
-            + self.positions.capacity() * size_of::<[f64; 3]>()
+            + self.positions.capacity() * size_of::<[f64; 4]>()
     }
 }
 
@@ -485,7 +513,7 @@ struct TotalGradients<'a> {
     dimension: usize,
     lists: &'a Lists,
     initial: &'a [InitialSums],
-    positions: &'a [[f64; 3]],
+    positions: &'a [[f64; 4]],
     /// Linear coefficient of the artificial viscosity.
     alpha: f64,
     /// Stiffness ξ of the hourglass control.
@@ -493,8 +521,8 @@ struct TotalGradients<'a> {
     modulus: Scatter<'a, f64>,
     deformation: Scatter<'a, [f64; 9]>,
     records: Scatter<'a, TotalRecord>,
-    shown: Scatter<'a, CorrectedRecord>,
-    places: &'a [u32],
+    /// Records by the lists of all bodies, and the places of this rank's particles there, if anybody reads them.
+    shown: Option<(Scatter<'a, CorrectedRecord>, &'a [u32])>,
     predicted_density: &'a [f64],
     norm: Scatter<'a, f64>,
     leaving: &'a [AtomicU64],
@@ -605,6 +633,7 @@ impl Show for ShowTotal<'_> {
             for c in 0..9 {
                 deformation[c] = total.deformation[c].0[k];
             }
+            let [x, y, z, _] = target.positions[index];
             // SAFETY: by the contract of this function.
             unsafe {
                 let record = CorrectedRecord::new(&own, &[0.0; 3], 0.0, state);
@@ -613,12 +642,14 @@ impl Show for ShowTotal<'_> {
                     hourglass: modulus,
                     density: record.density,
                     viscous_speed: record.viscous_speed,
-                    position: target.positions[index],
-                    deformation,
+                    position: [x, y, z],
+                    half_deformation: half(&deformation),
                 };
                 *target.modulus.slot(i) = modulus;
                 *target.deformation.slot(i) = deformation;
-                *target.shown.slot(target.places[i] as usize) = record;
+                if let Some((shown, places)) = &target.shown {
+                    *shown.slot(places[i] as usize) = record;
+                }
                 *target.norm.slot(i) = (total.squeeze.0[k] * speed).max(1.0);
             }
         });
@@ -628,4 +659,14 @@ impl Show for ShowTotal<'_> {
         // Bits of positive numbers are in their order.
         target.farthest.fetch_max(farthest.to_bits(), Relaxed);
     }
+}
+
+/// Half a matrix.
+#[inline(always)]
+fn half(matrix: &[f64; 9]) -> [f64; 9] {
+    let mut half = *matrix;
+    for component in &mut half {
+        *component *= 0.5;
+    }
+    half
 }
