@@ -3,7 +3,7 @@
 use numerics::lanes::{F64x8, LANES, Lanes};
 
 /// κ, by which the curvature of a flow counts in the share of both terms.
-const ROUGH: f64 = 1.5;
+const ROUGH: f64 = 3.0;
 /// Closing speed over sound speed at which a neighbourhood takes all of the viscosity.
 const STRONG: f64 = 0.3;
 
@@ -67,21 +67,20 @@ impl Limiter {
         }
     }
 
-    /// The share that both terms take, of points with these sound speeds (m/s), rates of plastic strain (1/s) and damages:
-    /// `1 − λ (1 − g)` with `g = min(1, κ (|w|/s)²/‖D‖² + (s max(0, −tr D)/.3c)²)` and as λ the share of plastic flow in the
-    /// equivalent rate of strain or the damage, whichever is larger.
+    /// The share that both terms take, of points with these sound speeds (m/s) and rates of plastic strain (1/s):
+    /// `1 − λ (1 − g)` with `g = min(1, κ (|w|/s)²/‖D‖² + (s max(0, −tr D)/.3c)²)` and the share λ of plastic flow in the
+    /// equivalent rate of strain.
     ///
-    /// In plastic flow and in matter that has failed it falls with the square of the spacing where the flow is smooth, and is one in a front of a few
-    /// particles, where neighbours rattle, and where matter is struck. In other matter it is one.
+    /// In plastic flow it falls with the square of the spacing where the flow is smooth, and is one in a front of a few
+    /// particles, where neighbours rattle, and where matter is struck. In matter that does not flow it is one.
     #[inline(always)]
     #[must_use]
-    pub fn both<V: Lanes>(&self, sound_speed: V, plastic_rate: V, damage: V) -> F64x8 {
+    pub fn both<V: Lanes>(&self, sound_speed: V, plastic_rate: V) -> F64x8 {
         let (one, few) = (V::splat(1.0), V::splat(f64::MIN_POSITIVE));
         let limit = sound_speed.mul(V::splat(STRONG)).max(few);
         let strong = V::load(&self.closing).div(limit);
         let share = one.min(strong.mul_add(strong, V::load(&self.rough)));
-        let flow = plastic_rate.div(V::load(&self.shear).max(few));
-        let flow = one.min(flow.max(damage));
+        let flow = one.min(plastic_rate.div(V::load(&self.shear).max(few)));
         flow.neg_mul_add(one.sub(share), one).store()
     }
 }
@@ -105,7 +104,7 @@ mod tests {
     /// Of both terms there, where sound runs a metre in a second and all strain is plastic.
     fn both(l: &[f64; 9], rest: [f64; 3]) -> f64 {
         let lanes = |c: f64| F64x8([c; LANES]);
-        all(l, rest).both(lanes(1.0), lanes(1e3), lanes(0.0)).0[0]
+        all(l, rest).both(lanes(1.0), lanes(1e3)).0[0]
     }
 
     fn diagonal(x: f64, y: f64, z: f64) -> [f64; 9] {
@@ -153,31 +152,19 @@ mod tests {
         let wave = diagonal(-1e-3, 0.0, 0.0);
         assert!((both(&wave, SMOOTH) - 1e-6 / 0.09).abs() < 1e-15);
         let bend = both(&wave, [1e-4, 0.0, 0.0]);
-        assert!((bend - 0.015 - 1e-6 / 0.09).abs() < 1e-12, "{bend}");
-        assert_eq!(both(&wave, [9e-4, 0.0, 0.0]), 1.0);
+        assert!((bend - 0.03 - 1e-6 / 0.09).abs() < 1e-12, "{bend}");
+        assert_eq!(both(&wave, [6e-4, 0.0, 0.0]), 1.0);
         assert_eq!(both(&diagonal(-0.2, -0.1, -0.1), SMOOTH), 1.0);
         assert_eq!(both(&diagonal(0.2, 0.1, 0.1), SMOOTH), 0.0);
         assert_eq!(both(&[0.0; 9], SMOOTH), 0.0);
         assert!(both(&[f64::NAN; 9], SMOOTH).is_nan());
         let lanes = |c: f64| F64x8([c; LANES]);
-        assert_eq!(
-            all(&wave, SMOOTH)
-                .both(lanes(0.0), lanes(1e3), lanes(0.0))
-                .0[0],
-            1.0
-        );
+        assert_eq!(all(&wave, SMOOTH).both(lanes(0.0), lanes(1e3)).0[0], 1.0);
         // Uniaxial strain of 1/s strains plastically by two thirds of that, or less.
-        let share = |rate: f64, damage: f64| {
-            all(&wave, SMOOTH)
-                .both(lanes(1.0), lanes(rate), lanes(damage))
-                .0[0]
-        };
-        let plastic = |rate: f64| share(rate, 0.0);
+        let plastic = |rate: f64| all(&wave, SMOOTH).both(lanes(1.0), lanes(rate)).0[0];
         assert_eq!(plastic(0.0), 1.0);
         assert!((plastic(1e-3 / 3.0) - 0.5).abs() < 1e-5);
         assert!(plastic(2e-3 / 3.0) < 2e-5);
-        assert!((share(0.0, 0.5) - 0.5).abs() < 1e-5);
-        assert!(share(0.0, 1.0) < 2e-5);
     }
 
     /// A body that vibrates while it turns takes as much as one at rest.

@@ -305,11 +305,7 @@ impl<S: PairScale> Show for ShowCorrected<'_, S> {
         }
         let dt = V::splat(target.hourglass.dt).max(V::splat(f64::MIN_POSITIVE));
         let strained = V::read(&after.plastic_strain).sub(V::read(&points.before.plastic_strain));
-        let share = self.limiter.both(
-            V::read(&after.sound_speed),
-            strained.div(dt),
-            V::read(&after.damage),
-        );
+        let share = (self.limiter).both(V::read(&after.sound_speed), strained.div(dt));
         points.each(|k, i, index| {
             let mut own = [0.0; 9];
             for c in 0..9 {
