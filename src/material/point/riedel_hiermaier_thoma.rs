@@ -116,19 +116,21 @@ impl RiedelHiermaierThoma {
         let angle = libm::acos(at_most(at_least(triple, -1.0), 1.0)) / 3.0;
         lode_share(libm::cos(angle), q)
     }
+}
 
-    /// Factors of the rate in compression and in tension.
-    fn rates<V: Lanes>(&self, rate_squared: &F64x8) -> [V; 2] {
-        let rate = V::load(rate_squared).mul(V::splat(2.0 / 3.0)).sqrt();
-        let factor = |reference: f64, exponent: f64| {
-            let ratio = rate.div(V::splat(reference)).max(V::splat(1.0));
-            pow(ratio, V::splat(exponent))
-        };
-        [
-            factor(self.reference_compression, self.rate_compression),
-            factor(self.reference_tension, self.rate_tension),
-        ]
-    }
+/// Factor of the rate of points with these squares of the deviatoric rates of deformation, `d':d'` (1/s²).
+#[inline(always)]
+fn rate_factor<V: Lanes>(square: &F64x8, reference: f64, exponent: f64) -> V {
+    let rate = V::load(square).mul(V::splat(2.0 / 3.0)).sqrt();
+    let ratio = rate.div(V::splat(reference)).max(V::splat(1.0));
+    pow(ratio, V::splat(exponent))
+}
+
+/// Where x lies between two values, from 1 at the upper to 0 at the lower one.
+#[inline(always)]
+fn between<V: Lanes>(x: V, upper: V, lower: V) -> V {
+    let place = x.sub(lower).div(upper.sub(lower));
+    place.max(V::splat(0.0)).min(V::splat(1.0))
 }
 
 /// Factors of the rate in tension of eight points.
@@ -142,7 +144,8 @@ impl Vectorised for TensionRates<'_> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> F64x8 {
-        self.law.rates::<V>(self.rate)[1].store()
+        let law = self.law;
+        rate_factor::<V>(self.rate, law.reference_tension, law.rate_tension).store()
     }
 }
 
@@ -162,19 +165,15 @@ impl Vectorised for Strengths<'_> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> [F64x8; 4] {
         let law = self.law;
-        let (zero, one, three) = (V::splat(0.0), V::splat(1.0), V::splat(3.0));
+        let (zero, three) = (V::splat(0.0), V::splat(3.0));
         let least = V::splat(f64::MIN_POSITIVE);
         let unit = V::splat(law.compressive_strength);
         let pressed = V::read(self.pressure).div(unit);
         let threefold = pressed.mul(three);
-        let [fast, pulled] = law.rates::<V>(self.rate);
-        // Where p* lies between two values, from 1 at the upper to 0 at the lower one.
-        let between = |upper: V, lower: V| {
-            let place = threefold.sub(lower).div(upper.sub(lower));
-            place.max(zero).min(one)
-        };
+        let fast: V = rate_factor(self.rate, law.reference_compression, law.rate_compression);
+        let pulled: V = rate_factor(self.rate, law.reference_tension, law.rate_tension);
         let tensile = V::splat(law.tensile_ratio).mul(pulled);
-        let compressed = between(fast, zero.sub(tensile));
+        let compressed = between(threefold, fast, zero.sub(tensile));
         let factor = compressed.mul_add(fast.sub(pulled), pulled);
         let shear = law.shear_ratio / law.shear_share();
         let at_zero = factor.mul(V::splat(shear));
@@ -192,7 +191,7 @@ impl Vectorised for Strengths<'_> {
             let upper = factor.mul(V::splat(law.elastic_compression));
             let lower = factor.mul(V::splat(-law.elastic_tension * law.tensile_ratio));
             let range = V::splat(law.elastic_compression - law.elastic_tension);
-            between(upper, lower).mul_add(range, V::splat(law.elastic_tension))
+            between(threefold, upper, lower).mul_add(range, V::splat(law.elastic_tension))
         };
         let friction = pow(pressed.max(least), V::splat(law.m)).mul(positive(pressed));
         [
