@@ -85,14 +85,16 @@ pub(crate) use with_formulation;
 const CHUNKS_OF_A_TASK: usize = 16;
 
 impl Sph {
-    /// Of a case.
+    /// Of a case on so many processes.
     #[must_use]
-    pub fn new(case: &Case, groups: &Groups, layout: &InitialLayout) -> Self {
+    pub fn new(case: &Case, processes: usize, groups: &Groups, layout: &InitialLayout) -> Self {
         Self {
             smoothing: Smoothing::new(case),
             form: match case.sph.form {
                 SphForm::Conventional => Form::Conventional(Conventional::default()),
-                SphForm::Corrected => Form::Corrected(Corrected::new(case, groups, layout)),
+                SphForm::Corrected => {
+                    Form::Corrected(Corrected::new(case, processes, groups, layout))
+                }
                 SphForm::Normalised => Form::Normalised(Normalised::default()),
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },

@@ -143,7 +143,7 @@ impl Simulation {
                 halo: Halo::new(Mirrors::new(&case.symmetry)),
             },
             search: Search::new(&case, table, layout),
-            sph: Sph::new(&case, &contact.table.groups, layout),
+            sph: Sph::new(&case, comm.size(), &contact.table.groups, layout),
             loads: Loads::new(&case),
             self_gravity: SelfGravity::new(&case),
             accounts,

@@ -35,6 +35,8 @@ pub struct Corrected {
     places: Vec<u32>,
     /// Those of halo particles.
     received: Vec<CorrectedRecord>,
+    /// True if there is no other process that reads of these.
+    is_alone: bool,
     /// Stiffness ξ of the hourglass control.
     hourglass: f64,
     /// Bodies of the total form.
@@ -42,10 +44,11 @@ pub struct Corrected {
 }
 
 impl Corrected {
-    /// Of a case.
+    /// Of a case on so many processes.
     #[must_use]
-    pub fn new(case: &Case, groups: &Groups, layout: &InitialLayout) -> Self {
+    pub fn new(case: &Case, processes: usize, groups: &Groups, layout: &InitialLayout) -> Self {
         Self {
+            is_alone: processes == 1,
             hourglass: case.sph.hourglass,
             total: TotalBodies::new(case, groups, layout).map(Box::new),
             ..Self::default()
@@ -88,8 +91,8 @@ impl Formulation for Corrected {
         lists: &Lists,
         step: &Step,
     ) {
-        // Of bodies of the total form images alone have their records here.
-        let alone = lists.sequence().is_alone();
+        // Of bodies of the total form nobody but images and other processes reads records here.
+        let alone = self.is_alone && lists.sequence().is_alone();
         if !alone || !self.are_all_total() {
             scratch_of(&mut self.records, lists.images().len());
         }
