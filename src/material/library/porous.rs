@@ -178,7 +178,7 @@ const CONCRETE_DISTENSION: f64 = 1.1;
 /// Pores of the record of a name, in a solid of this density (kg/m³).
 pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
     let (distension, law) = match name {
-        "aluminium-foam" => (1.275, p_alpha([80e6, 700e6], 4110.0)),
+        "aluminium-foam" => (1.275, p_alpha([80e6, 700e6], 2.0, 4110.0)),
         "concrete-48" => {
             let law = HolmquistJohnsonCookCompaction {
                 crush_pressure: 16e6,
@@ -190,33 +190,26 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
                 Compaction::HolmquistJohnsonCookCompaction(law),
             )
         }
-        "concrete-35" => {
-            let law = PAlpha {
-                exponent: 3.0,
-                ..p_alpha_law([23.3e6, 6e9], 2920.0)
-            };
-            (2750.0 / 2314.0, Compaction::PAlpha(law))
-        }
-        "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 1200.0)),
+        "concrete-35" => (2750.0 / 2314.0, p_alpha([23.3e6, 6e9], 3.0, 2920.0)),
+        "regolith-jsc-1a" => (1.72, p_alpha([100.0, 1.3e9], 2.0, 1200.0)),
         _ => return None,
     };
     Some(Porosity::new(distension, law, density, eos))
 }
 
-/// Quadratic, of `[P_e, P_s]` (Pa) and the bulk sound speed of virgin matter (m/s).
-fn p_alpha(pressures: [f64; 2], sound_speed: f64) -> Compaction {
-    Compaction::PAlpha(p_alpha_law(pressures, sound_speed))
-}
-
-/// The same, as a law.
-fn p_alpha_law([elastic_pressure, solid_pressure]: [f64; 2], sound_speed: f64) -> PAlpha {
-    PAlpha {
+/// Of `[P_e, P_s]` (Pa), the exponent and the bulk sound speed of virgin matter (m/s).
+fn p_alpha(
+    [elastic_pressure, solid_pressure]: [f64; 2],
+    exponent: f64,
+    sound_speed: f64,
+) -> Compaction {
+    Compaction::PAlpha(PAlpha {
         elastic_pressure,
         solid_pressure,
-        exponent: 2.0,
+        exponent,
         transition_pressure: 0.0,
         transition_distension: 1.0,
         transition_exponent: 2.0,
         sound_speed,
-    }
+    })
 }
