@@ -7,7 +7,7 @@
 //! with the permanent compression `μ_p` of a material that has [pores](crate::Porosity) and the pressures of [`HolmquistJohnsonCook`](super::HolmquistJohnsonCook), the strength that this law belongs to.
 //! Source: Holmquist, Johnson & Cook (1993), 14th Int. Symp. Ballistics, 591.
 
-use super::{Conditions, LANES, Law, PointBatch};
+use super::{Conditions, LANES, Lanes, Law, PointBatch};
 use crate::at_least;
 
 law! {
@@ -28,24 +28,36 @@ pub(super) fn failure_strain([d1, d2, least]: [f64; 3], x: f64) -> f64 {
     at_least(d1 * power, least)
 }
 
+/// Damages eight points by increments of strain, lane by lane where there is any, with the constants of [`failure_strain`].
+pub(super) fn advance(point: &mut PointBatch, now: &Conditions, constants: [f64; 3], by: &Lanes) {
+    for k in 0..LANES {
+        if by[k] > 0.0 {
+            let factor = now.options.strain_factor(point.id[k]);
+            let strain = factor * failure_strain(constants, now.curves.above[k]);
+            point.damage[k] += by[k] / strain;
+        }
+    }
+}
+
 impl HolmquistJohnsonCookFailure {
+    fn strain_constants(&self) -> [f64; 3] {
+        [self.d1, self.d2, self.least_strain]
+    }
+
     /// Failure strain at `p* + T*`.
     #[must_use]
     pub fn failure_strain(&self, above: f64) -> f64 {
-        failure_strain([self.d1, self.d2, self.least_strain], above)
+        failure_strain(self.strain_constants(), above)
     }
 
-    /// Lane by lane: only what flows or crushes is damaged.
+    /// What flows or crushes is damaged.
     #[inline(never)]
     fn damage(&self, point: &mut PointBatch, now: &Conditions) {
+        let mut by = now.plastic_increment;
         for k in 0..LANES {
-            let increment = now.plastic_increment[k] + at_least(now.permanent[k], 0.0);
-            if increment > 0.0 {
-                let factor = now.options.strain_factor(point.id[k]);
-                let strain = factor * self.failure_strain(now.curves.above[k]);
-                point.damage[k] += increment / strain;
-            }
+            by[k] += at_least(now.permanent[k], 0.0);
         }
+        advance(point, now, self.strain_constants(), &by);
     }
 }
 

@@ -8,9 +8,9 @@
 //! from the end of its hardening on. Source: Riedel, Thoma, Hiermaier & Schmolinske (1999), 9th Int. Symp. Interaction of the
 //! Effects of Munitions with Structures, 315.
 
-use super::holmquist_johnson_cook_failure::failure_strain;
+use super::holmquist_johnson_cook_failure::advance;
 use super::{Conditions, LANES, Law, PointBatch};
-use crate::{at_least, at_most};
+use crate::at_most;
 
 law! {
     /// Damage by plastic strain beyond the failure surface.
@@ -25,19 +25,14 @@ law! {
 }
 
 impl RiedelHiermaierThomaFailure {
-    /// Lane by lane: only what flows beyond its hardening is damaged.
+    /// What flows beyond its hardening is damaged.
     #[inline(never)]
     fn damage(&self, point: &mut PointBatch, now: &Conditions) {
+        let mut by = now.plastic_increment;
         for k in 0..LANES {
-            let beyond = at_least(point.plastic_strain[k] - now.curves.hardened[k], 0.0);
-            let increment = at_most(now.plastic_increment[k], beyond);
-            if increment > 0.0 {
-                let factor = now.options.strain_factor(point.id[k]);
-                let constants = [self.d1, self.d2, self.least_strain];
-                let strain = factor * failure_strain(constants, now.curves.above[k]);
-                point.damage[k] += increment / strain;
-            }
+            by[k] = at_most(by[k], point.plastic_strain[k] - now.curves.hardened[k]);
         }
+        advance(point, now, [self.d1, self.d2, self.least_strain], &by);
     }
 }
 
