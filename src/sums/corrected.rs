@@ -22,7 +22,6 @@ pub use forces::CorrectedRecord;
 
 use super::limiter::Limiter;
 use super::neighbourhood::Neighbourhood;
-use super::own_pairs::{BLOCK, Own};
 pub(crate) use motion::spin;
 use motion::{PlainSums, motion};
 use numerics::dispatch::Vectorised;
@@ -137,26 +136,23 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
         let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
         let (mut mean_velocity, mut place) = ([zero; 3], [zero; 3]);
         let mut square = zero;
-        let mut own = Own::take();
-        for block in self.around.neighbours.chunks(BLOCK) {
-            own.choose::<V, S>(&self.around, block);
-            for pair in own.pairs(&self.around, &position) {
-                let (r, apart, factor) = (pair.r, pair.square, pair.factor);
-                let steep = add_moment(&mut moment, &r, factor);
-                let weight = factor.mul(apart);
-                square = apart.mul_add(weight, square);
-                for a in 0..3 {
-                    let v_a = pair.velocity[a].sub(velocity[a]);
-                    mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
-                    place[a] = r[a].mul_add(weight, place[a]);
-                    for b in 0..3 {
-                        let sum = &mut gradient[3 * a + b];
-                        *sum = v_a.mul_add(steep[b], *sum);
-                    }
+        for pair in self.around.pairs(&position) {
+            let (here, r) = (pair.source, pair.separation.r);
+            let volume = V::splat(here.volume);
+            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
+            let steep = add_moment(&mut moment, &r, factor);
+            let weight = factor.mul(pair.separation.square);
+            square = pair.separation.square.mul_add(weight, square);
+            for a in 0..3 {
+                let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
+                mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
+                place[a] = r[a].mul_add(weight, place[a]);
+                for b in 0..3 {
+                    let sum = &mut gradient[3 * a + b];
+                    *sum = v_a.mul_add(steep[b], *sum);
                 }
             }
         }
-        own.give();
         let [xx, yy, zz, ..] = moment;
         PlainSums {
             gradient,

@@ -3,8 +3,7 @@
 //!
 //! A *cluster* of eight receivers meets its neighbours one by one in one canonical order; the
 //! eight receivers stand in the lanes of a vector, so no sum ever crosses lanes and a lane
-//! outside the support adds an exact zero. The first sweep of the corrected form leaves those out, and lists of the total
-//! form, which last, have neighbours of each lane's own.
+//! outside the support adds an exact zero. Lists of the total form, which last, have neighbours of each lane's own.
 
 pub mod corrected;
 pub mod face;
@@ -19,7 +18,6 @@ pub mod momentum;
 pub mod neighbour_mean;
 pub mod neighbourhood;
 pub mod normalised;
-mod own_pairs;
 pub mod principal;
 pub mod pull_sweep;
 pub mod scale;

@@ -1,6 +1,6 @@
 //! Lanes whose every operation is a call, for builds that emulate fused multiply-add.
 
-use super::{F64x8, LANES, Lanes, by_columns};
+use super::{F64x8, LANES, Lanes};
 
 /// [`F64x8`] that never lands inside its callers: where each fused multiply-add of eight lanes is eight calls anyway,
 /// sums over pairs would be several times as long, and no faster.
@@ -46,23 +46,8 @@ impl Lanes for Portable {
 
     #[inline(always)]
     fn columns(rows: [&[f64; 4]; LANES]) -> [Self; 4] {
-        let [a, b, c, d] = by_columns(rows);
+        let [a, b, c, d] = F64x8::columns(rows);
         [Self(a), Self(b), Self(c), Self(d)]
-    }
-
-    #[inline(always)]
-    fn transposed(rows: [&[f64; LANES]; LANES]) -> [Self; LANES] {
-        let [a, b, c, d, e, f, g, h] = by_columns(rows);
-        [
-            Self(a),
-            Self(b),
-            Self(c),
-            Self(d),
-            Self(e),
-            Self(f),
-            Self(g),
-            Self(h),
-        ]
     }
 
     apart! {

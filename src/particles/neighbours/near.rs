@@ -1,7 +1,7 @@
 //! Images near a box: eight of the sequence at a time.
 
 use super::sequence::{Eight, Sequence};
-use numerics::lanes::{LANES, Lanes, MEMBERS};
+use numerics::lanes::{LANES, Lanes};
 
 /// Box tests reach this much farther than the kernel, so that rounding
 /// never drops a pair with a contribution.
@@ -69,7 +69,7 @@ pub(super) fn push_places(list: &mut Vec<u32>, used: usize, first: usize, bits: 
     if list.len() < used + LANES {
         grow(list, used + LANES);
     }
-    let offsets = MEMBERS[bits as usize];
+    let offsets = OFFSETS[bits as usize];
     #[allow(clippy::cast_possible_truncation, reason = "images fit u32")]
     let first = first as u32;
     let mut indices = [first; LANES];
@@ -87,7 +87,7 @@ pub(super) fn push_numbers(list: &mut Vec<f64>, used: usize, numbers: &[f64; LAN
     if list.len() < used + 2 * LANES {
         list.resize(used + used / 4 + 512, 0.0);
     }
-    let offsets = MEMBERS[bits as usize];
+    let offsets = OFFSETS[bits as usize];
     let mut chosen = [0.0; LANES];
     for k in 0..LANES {
         // The mask spares a look at the bound.
@@ -103,3 +103,21 @@ fn grow(list: &mut Vec<u32>, length: usize) {
     list.reserve_exact(wanted - list.len());
     list.resize(wanted, 0);
 }
+
+/// For each set of bits, its members in ascending order, and whatever.
+static OFFSETS: [[u8; LANES]; 256] = {
+    let mut table = [[0; LANES]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut k, mut next) = (0, 0);
+        while k < 8 {
+            if bits >> k & 1 == 1 {
+                table[bits][next] = k;
+                next += 1;
+            }
+            k += 1;
+        }
+        bits += 1;
+    }
+    table
+};
