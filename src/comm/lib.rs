@@ -36,6 +36,7 @@ impl Session {
     /// Initialises MPI; `None` if it was already initialised or lacks funneled threads.
     #[must_use]
     pub fn start() -> Option<(Self, Comm)> {
+        spare_shared_pointers();
         let (universe, threading) = mpi::initialize_with_threading(mpi::Threading::Funneled)?;
         if threading < mpi::Threading::Funneled {
             return None;
@@ -47,6 +48,16 @@ impl Session {
             },
             comm,
         ))
+    }
+}
+
+/// Asks Open MPI for no shared file pointers by a file beside each file: it holds the path of that in 256 bytes, and a
+/// longer one ends the program (4.1.4). Nothing here uses such pointers.
+fn spare_shared_pointers() {
+    const CHOICE: &str = "OMPI_MCA_sharedfp";
+    if std::env::var_os(CHOICE).is_none() {
+        // SAFETY: no other thread reads or writes the environment this early.
+        unsafe { std::env::set_var(CHOICE, "individual") };
     }
 }
 

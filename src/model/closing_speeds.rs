@@ -9,7 +9,7 @@ use numerics::tree::Tree;
 /// Part of a speed by which bounds of it may be wrong by rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The velocities that the bodies of a case have as far as it says, see [`Case::closing_speed`]. One that many bodies
+/// The velocities that the bodies of a case have as far as it says, see [`Case::impact_speed`]. One that many bodies
 /// have is kept of two of them.
 #[derive(Debug, Clone)]
 pub struct ClosingSpeeds {

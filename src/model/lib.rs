@@ -240,9 +240,9 @@ impl Case {
         speeds.fold(0.0, f64::max)
     }
 
-    /// The "impact speed" (m/s) of the interpenetration measure: the largest
-    /// [`Self::closing_speed`] of two bodies, or the largest speed of a single one if there is
-    /// none.
+    /// The impact speed (m/s) of contact and of the interpenetration measure: the largest speed of two bodies against each
+    /// other by the velocities at which they begin and those that loads and rigid motions prescribe, at whatever times; or
+    /// the largest speed of a single one if there is none.
     #[must_use]
     pub fn impact_speed(&self) -> f64 {
         let speed = ClosingSpeeds::new(self).largest();
@@ -273,22 +273,6 @@ impl Case {
     #[must_use]
     pub fn impact_stiffness(density: f64, speed: f64) -> f64 {
         0.85 * density * speed * speed
-    }
-
-    /// Largest speed of two bodies against each other (m/s) by the velocities at which they begin
-    /// and those that loads and rigid motions prescribe, at whatever times; of a body with itself
-    /// zero.
-    #[must_use]
-    pub fn closing_speed(&self, a: usize, b: usize) -> f64 {
-        if a == b {
-            return 0.0;
-        }
-        let theirs = self.known_velocities(b);
-        let mine = self.known_velocities(a).into_iter();
-        let spread = self.bodies[a].speed_spread() + self.bodies[b].speed_spread();
-        mine.flat_map(|v| theirs.iter().map(move |other| (v - other).norm()))
-            .fold(0.0, f64::max)
-            + spread
     }
 
     /// The velocity at which a body begins and all corners of the tables that prescribe one (m/s).

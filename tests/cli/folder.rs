@@ -384,3 +384,11 @@ fn an_edited_case_is_refused_or_taken() {
     assert_same(&run, &reference);
     assert!(rows(&run) > rows(&whole));
 }
+
+#[test]
+fn a_folder_may_have_a_long_path() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("a".repeat(180)).join("b".repeat(180));
+    end(&mut coarse_run(2, &run)).with_code(0);
+    end(command(WHIPPLE).arg("info").arg(&run)).with_code(0);
+}

@@ -72,42 +72,26 @@ impl Constants for Overlap {
 
     fn pair(&self, of: &Between) -> OverlapPair {
         let [a, b] = of.bodies;
+        let density = harmonic_mean(of, |body| of.case.initial_density(body));
+        let core_modulus = harmonic_mean(of, |body| of.case.contact_modulus(body));
+        let impact = Case::impact_stiffness(density, of.impact_speed);
+        let core_radius = self.core_radius * of.pair.spacing;
         OverlapPair {
-            modulus: self.stiffness * of.modulus.max(impact_stiffness(of.case, of.indices)),
+            modulus: self.stiffness * of.modulus.max(impact),
             touching: populate::touching_value(a, b, of.case.dimension),
-            core_modulus: self.core_stiffness * core_scale(of.case, of.indices),
-            core_radius: self.core_radius * of.pair.spacing,
-            core_viscosity: 0.5 * CORE_VISCOSITY * meeting_density(of.case, of.indices)
-                / (self.core_radius * of.pair.spacing),
-            isolated_viscosity: ISOLATED_VISCOSITY * meeting_density(of.case, of.indices)
-                / WHOLE_EXCESS,
+            core_modulus: self.core_stiffness * core_modulus.max(impact),
+            core_radius,
+            core_viscosity: 0.5 * CORE_VISCOSITY * density / core_radius,
+            isolated_viscosity: ISOLATED_VISCOSITY * density / WHOLE_EXCESS,
             along_normal: self.direction == ContactDirection::Normal,
         }
     }
 }
 
-/// Stiffness of the core of two bodies (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
-/// speed against each other that the case states. M and ρ are harmonic means of moduli and
-/// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
-fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
-    let modulus = harmonic_mean(case, bodies, |body| case.contact_modulus(body));
-    modulus.max(impact_stiffness(case, bodies))
-}
-
-/// `.85 ρ v²` of two bodies (Pa), see [`core_scale`].
-fn impact_stiffness(case: &Case, bodies: [usize; 2]) -> f64 {
-    let speed = case.closing_speed(bodies[0], bodies[1]);
-    Case::impact_stiffness(meeting_density(case, bodies), speed)
-}
-
-/// Harmonic mean of two bodies' densities (kg/m³).
-fn meeting_density(case: &Case, bodies: [usize; 2]) -> f64 {
-    harmonic_mean(case, bodies, |body| case.initial_density(body))
-}
-
-/// That of a value of two bodies; what is rigid counts as infinite.
-fn harmonic_mean(case: &Case, [a, b]: [usize; 2], value: impl Fn(&Body) -> f64) -> f64 {
-    let bodies = [&case.bodies[a], &case.bodies[b]];
+/// Harmonic mean of a value of two bodies, as the mass of two particles that meet head-on is; what is rigid counts as
+/// infinite.
+fn harmonic_mean(of: &Between, value: impl Fn(&Body) -> f64) -> f64 {
+    let bodies = of.indices.map(|index| &of.case.bodies[index]);
     let soft = bodies.into_iter().filter(|body| body.rigid.is_none());
     2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
 }

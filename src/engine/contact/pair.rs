@@ -36,6 +36,8 @@ pub(crate) struct Between<'a> {
     pub indices: [usize; 2],
     /// The smaller p-wave modulus (Pa).
     pub modulus: f64,
+    /// That of the case (m/s): what two others drive may press these, however slow they are.
+    pub impact_speed: f64,
     pub pair: &'a Pair,
 }
 

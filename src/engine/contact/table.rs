@@ -76,9 +76,10 @@ impl ContactTable {
         let bodies: Vec<Body> = (0..n)
             .map(|size_class| table.foreign.size_classes.body_of_size(case, size_class))
             .collect();
+        let speed = case.impact_speed();
         for a in 0..n {
             for b in 0..n {
-                table.add(case, [a, b], [&bodies[a], &bodies[b]]);
+                table.add(case, speed, [a, b], [&bodies[a], &bodies[b]]);
             }
         }
         if table.has_pairs() || !case.loads.surfaces.is_empty() {
@@ -129,8 +130,14 @@ impl ContactTable {
         })
     }
 
-    /// Adds the next pair.
-    fn add(&mut self, case: &Case, size_classes: [usize; 2], bodies: [&Body; 2]) {
+    /// Adds the next pair of a case with an impact speed (m/s).
+    fn add(
+        &mut self,
+        case: &Case,
+        impact_speed: f64,
+        size_classes: [usize; 2],
+        bodies: [&Body; 2],
+    ) {
         let [a, b] = size_classes.map(|size_class| self.foreign.size_classes.body(size_class));
         // Of those that share a size class any two stand for all.
         let mode = if self.foreign.size_classes.is_shared(size_classes[0]) && a == b {
@@ -146,6 +153,7 @@ impl ContactTable {
             bodies,
             indices: [a, b],
             modulus: modulus[0].min(modulus[1]),
+            impact_speed,
             pair: &pair,
         };
         self.modes.push(&of, &mode);
