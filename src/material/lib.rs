@@ -480,6 +480,12 @@ impl Material {
         response.pressure
     }
 
+    /// True if it has directions of its own.
+    #[must_use]
+    pub fn has_directions(&self) -> bool {
+        matches!(self.strength, Strength::Orthotropic(_))
+    }
+
     /// True if it is an explosive.
     #[must_use]
     pub fn burns(&self) -> bool {

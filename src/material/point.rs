@@ -23,6 +23,7 @@ mod law;
 mod lundborg;
 mod mohr_coulomb;
 mod neo_hookean;
+mod orthotropic;
 mod plastic_strain;
 mod principal_stress;
 mod principal_tension;
@@ -58,6 +59,7 @@ pub use law::{Conditions, Contradiction, Curves, Law};
 pub use lundborg::Lundborg;
 pub use mohr_coulomb::MohrCoulomb;
 pub use neo_hookean::NeoHookean;
+pub use orthotropic::{Orthotropic, Stiffness};
 pub use plastic_strain::PlasticStrain;
 pub use principal_stress::PrincipalStress;
 pub(super) use radial_return::equivalent_stress;
@@ -110,6 +112,12 @@ macro_rules! point_fields {
             lighting_time: Scalar, Memory;
             /// Pressure by bulking of what is broken (Pa).
             bulking_pressure: Scalar, Memory;
+            /// Direction 1 of the matter, a unit vector; zero without directions.
+            fibre: Vector, Memory;
+            /// Direction 3 of the matter, a unit vector; zero without directions.
+            normal: Vector, Memory;
+            /// Elastic strain in the frame of the directions, `11 22 33 12 13 23`.
+            elastic_strain: Symmetric, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).
@@ -132,6 +140,8 @@ strength_laws! {
     elastic: Elastic;
     /// Neo-Hookean rubber (hyperelastic), without bound.
     neo_hookean: NeoHookean;
+    /// Elastic along directions of the matter's own.
+    orthotropic: Orthotropic;
     /// Elastic–plastic with a von Mises yield stress and linear hardening.
     von_mises: VonMises;
     /// Elastic–plastic with the flow stress of Johnson and Cook.

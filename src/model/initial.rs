@@ -1,6 +1,6 @@
 //! The initial state of the particles of a body, as in a case.
 
-use super::{Loading, Profile};
+use super::{Fibres, Loading, Profile};
 use material::Stressed;
 
 /// The source of the specific energy of particles.
@@ -34,6 +34,8 @@ pub struct Initial {
     pub loading: Option<Loading>,
     /// The state under it, where that is the same everywhere and has been found.
     pub even: Option<Stressed>,
+    /// Directions of its matter, where that has some of its own.
+    pub fibres: Option<Fibres>,
 }
 
 impl Initial {

@@ -14,6 +14,7 @@ mod contact;
 mod control;
 pub mod differences;
 mod distance;
+mod fibres;
 mod formula;
 mod fragments;
 mod gauge;
@@ -45,6 +46,7 @@ pub use control::{
     ClockInterval, DefaultFactors, DomainOptions, OutputOptions, Precision, RunControl, Sharing,
     SmoothingLength, SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
+pub use fibres::{FibrePattern, Fibres};
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};
@@ -204,6 +206,13 @@ impl Case {
     pub fn is_explosive(&self) -> bool {
         let mut bodies = self.bodies.iter();
         bodies.any(|body| self.materials[body.material].burns())
+    }
+
+    /// `true` if a material of the case has directions of its own.
+    #[must_use]
+    pub fn has_directions(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| self.materials[body.material].has_directions())
     }
 
     /// `true` if failure of a material of the case changes this field.

@@ -142,6 +142,12 @@ particle_fields! {
     lighting_time: Scalar,                "s",      State,    -,              OnDemand, EXPLOSIVE;
     /// Pressure by bulking of what is broken.
     bulking_pressure: Scalar,             "Pa",     State,    -,              OnDemand, BULKING;
+    /// Direction 1 of matter with directions of its own, along its fibres; zero in other matter.
+    fibre: Vector,                        "",       State,    -,              IfHeld,   DIRECTIONS;
+    /// Direction 3 of matter with directions of its own, across its layers; zero in other matter.
+    normal: Vector,                       "",       State,    -,              OnDemand, DIRECTIONS;
+    /// Elastic strain of such matter in the frame of its directions, 11 22 33 12 13 23.
+    elastic_strain: Symmetric as Same,    "",       State,    -,              OnDemand, DIRECTIONS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

@@ -16,6 +16,7 @@ mod explosives;
 mod failure;
 mod fluids;
 mod granular;
+mod orthotropic;
 mod plastic;
 mod porosity;
 mod rht;

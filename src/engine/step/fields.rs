@@ -31,6 +31,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::EXPLOSIVE, case.is_explosive()),
         (Owner::BULKING, case.fails_with("bulking_pressure")),
         (Owner::YIELD, case.may_yield()),
+        (Owner::DIRECTIONS, case.has_directions()),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
         (Owner::CONVENTIONAL, sph.form == SphForm::Conventional),

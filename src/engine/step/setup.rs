@@ -205,6 +205,11 @@ impl<'a> Start<'a> {
         if let Some(compaction) = particles.compaction.get_mut(i) {
             *compaction = held(begins.compaction);
         }
+        if let Some(fibres) = &self.body.initial.fibres {
+            let [fibre, normal] = fibres.at(&position.into());
+            particles.fibre[i] = fibre.into();
+            particles.normal[i] = normal.into();
+        }
         if begins.fault().is_none() {
             return Ok(());
         }

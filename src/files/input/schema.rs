@@ -13,7 +13,7 @@ use super::quantity::{
     SpecificEnergy, Strain, Temperature, Time, Velocity,
 };
 use super::source::Diagnostic;
-use model::{Axis, BodyForm, SphForm, TermOptions, pair_terms};
+use model::{Axis, BodyForm, FibrePattern, SphForm, TermOptions, pair_terms};
 
 #[macro_use]
 mod declare;
@@ -169,12 +169,31 @@ tables! {
         /// Configuration whose neighbours its sums are over: the initial one until it tears (total), that of each step
         /// (updated), or the initial one of what yields and nothing meets faster than a tenth of its sound speed (auto).
         form: Option<Spanned<BodyForm>> = BodyForm::Auto;
+        /// Directions of matter that has some of its own.
+        fibres: Option<Spanned<FibresParams>> => "1 along x, 3 along z";
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
         /// True if the body is rigid and keeps its velocity, whatever acts on it.
         rigid: Option<bool> = false;
         /// Motion of a rigid body.
         motion: Option<Spanned<MotionParams>> => "its `velocity` for ever";
+    }
+
+    /// `body.fibres`: direction 1 along the fibres, 3 across the layers.
+    FibresParams {
+        /// How the directions depend on the place: the same everywhere (straight), 1 away from an axis and 3 along it (radial),
+        /// or 1 around an axis and 3 away from it (wrapped).
+        pattern: Option<FibrePattern> = FibrePattern::Straight;
+        /// Direction 1 of what is straight.
+        along: Option<Spanned<AxisParams>> => "x";
+        /// Direction 3 of what is straight.
+        normal: Option<Spanned<AxisParams>> => "z";
+        /// Axis of the other patterns.
+        axis: Option<Spanned<AxisParams>> => "z";
+        /// A point of the axis.
+        centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
+        /// Turn of directions 1 and 2 about 3.
+        angle: Option<Placed<Angle>> = "0", Any;
     }
 
     /// `[[load]]`

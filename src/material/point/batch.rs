@@ -18,6 +18,9 @@ macro_rules! point_lanes {
     (Id) => {
         [u64; $crate::LANES]
     };
+    (Vector) => {
+        [$crate::Lanes; 3]
+    };
     (Symmetric) => {
         [$crate::Lanes; 6]
     };

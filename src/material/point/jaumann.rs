@@ -76,7 +76,7 @@ fn advance_point(l: &[f64; 9], s: &[f64; 6], g_dt: f64, dt: f64) -> [f64; 6] {
 /// `(I − A)⁻¹ (I + A) = I + 2 (A + A²)/(1 + |a|²)` for the skew matrix A of upper components
 /// `xy xz yz` and their square sum `|a|²`, row-major.
 #[inline(always)]
-fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
+pub(super) fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
     let (xy2, xz2, yz2) = (xy * xy, xz * xz, yz * yz);
     let f = 2.0 / (1.0 + (xy2 + xz2 + yz2));
     [
@@ -94,7 +94,7 @@ fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
 
 /// `Q S Qᵀ` for symmetric S as `xx yy zz xy xz yz`.
 #[inline(always)]
-fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
+pub(super) fn conjugate(q: &[f64; 9], s: &[f64; 6]) -> [f64; 6] {
     let [xx, yy, zz, xy, xz, yz] = *s;
     let columns = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
     let q_row = |i: usize| [q[3 * i], q[3 * i + 1], q[3 * i + 2]];

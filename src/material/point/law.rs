@@ -1,7 +1,7 @@
 //! Interface of a law of the material point, and the way those of a material act together.
 
 use super::failure::FailureOptions;
-use super::{LANES, Lanes, PointBatch, strain_rates_squared};
+use super::{LANES, Lanes, PointBatch, Stiffness, strain_rates_squared};
 use crate::ThermalConstants;
 use crate::declare::Listed;
 use numerics::lanes::F64x8;
@@ -181,6 +181,8 @@ pub struct Conditions {
     pub hardening: Lanes,
     /// Strengths at the pressure of the point, of a law that has two.
     pub curves: Curves,
+    /// Moduli of a law with directions; at first none.
+    pub stiffness: Stiffness,
     /// Options of the failure.
     pub options: FailureOptions,
 }
@@ -262,6 +264,7 @@ impl Conditions {
                 onset: [1.0; LANES],
                 hardened: [0.0; LANES],
             },
+            stiffness: Stiffness::ZERO,
             options: FailureOptions::DEFAULT,
         }
     }

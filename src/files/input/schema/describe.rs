@@ -15,8 +15,8 @@ use material::{
     RateForm, StrengthOf,
 };
 use model::{
-    Axis, BodyForm, ContactDirection, Include, LatticeKind, NumericalFailurePolicy, PenaltyLaw,
-    PotentialRange, Precision, SphForm,
+    Axis, BodyForm, ContactDirection, FibrePattern, Include, LatticeKind, NumericalFailurePolicy,
+    PenaltyLaw, PotentialRange, Precision, SphForm,
 };
 
 /// Type of value that may be typed.
@@ -255,6 +255,7 @@ described_words!(
     Coupling,
     Crosses,
     Effect,
+    FibrePattern,
     Flaws,
     Include,
     LatticeKind,

@@ -189,6 +189,29 @@ macro_rules! strength_laws {
                 /// Shear modulus.
                 shear_modulus: Placed<Pressure>, Positive;
             }
+            /// `strength.orthotropic`: elastic along directions of the matter's own, which `body.fibres` gives.
+            orthotropic: OrthotropicParams => Orthotropic {
+                /// Young's modulus along direction 1.
+                e1: Placed<Pressure>, Positive;
+                /// Young's modulus along direction 2.
+                e2: Placed<Pressure>, Positive;
+                /// Young's modulus along direction 3.
+                e3: Placed<Pressure>, Positive;
+                /// Contraction along 2 over the stretch along 1.
+                nu12: Spanned<f64>, Any;
+                /// Contraction along 3 over the stretch along 1.
+                nu13: Spanned<f64>, Any;
+                /// Contraction along 3 over the stretch along 2.
+                nu23: Spanned<f64>, Any;
+                /// Shear modulus of 1 and 2.
+                g12: Placed<Pressure>, Positive;
+                /// Shear modulus of 1 and 3.
+                g13: Placed<Pressure>, Positive;
+                /// Shear modulus of 2 and 3.
+                g23: Placed<Pressure>, Positive;
+                /// Largest equivalent stress of the deviator.
+                yield_stress: Placed<Pressure> = "0", NotNegative => "no limit";
+            }
             /// `strength.von_mises`: elastic–plastic.
             von_mises: VonMisesParams => VonMises {
                 /// Shear modulus.

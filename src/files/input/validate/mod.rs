@@ -11,6 +11,7 @@ mod detonators;
 mod domain;
 mod eos;
 mod failure;
+mod fibres;
 mod fragments;
 mod grading;
 mod initial;
@@ -128,6 +129,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     case.numerical_limits = numerical_limits::numerical_limits(&params.numerical_limits, case)?;
     case.loads.absorbers = absorbers::absorbers(&params.absorb, case)?;
     relaxation::relax(case, params)?;
+    fibres::resolve(case, &params.body)?;
     case.loads.detonators = detonators::detonators(&params.detonate, &params.body, case)?;
     pressures::check_form(case, &params.pressure)?;
     total::resolve(case, &params.body)?;

@@ -1,0 +1,359 @@
+//! Matter with three directions of its own: fibres along 1, layers across 3.
+//!
+//! The stress is that of the elastic strain in the frame of the directions, `C ε`, but for the part of the volume,
+//! which is that of the equation of state:
+//!
+//! ```text
+//! σ = C ε + K' tr ε I − p(ρ, e) I,    K' = Σ_ij C_ij/9   (i, j = 1 … 3)
+//! ```
+//!
+//! so that change of shape has a pressure of its own, `p' = K' tr ε − tr(C ε)/3`, and change of volume a deviator.
+//! Source: Anderson, Cox, Johnson & Maudlin (1994), *A constitutive formulation for anisotropic materials suitable for
+//! wave propagation computer programs II*, Comput. Mech. 15, 201; for composites under impact Clegg, White, Riedel &
+//! Harwick (2006), *Hypervelocity impact damage prediction in composites: Part I*, Int. J. Impact Eng. 33, 190.
+//!
+//! The frame turns with the spin of the matter by the rotation of [`super::jaumann`], and the strain grows by the rate of
+//! deformation in the frame, half of it before the turn and half after. A turn of any size leaves the strain as it is,
+//! and a closed path of strain without turn returns to no stress.
+//!
+//! The equivalent stress of the deviator is at most the yield stress, if there is one: the strain returns along its radius.
+
+use super::jaumann::{conjugate, rotation};
+use super::{Conditions, Contradiction, FAILED, LANES, Lanes, Law, PointBatch};
+use crate::at_least;
+use numerics::vector::dot;
+
+law! {
+    /// Orthotropic elasticity with the pressure of the equation of state.
+    Orthotropic {
+        /// Young's modulus along direction 1 (Pa).
+        e1: "Pa",
+        /// Young's modulus along direction 2 (Pa).
+        e2: "Pa",
+        /// Young's modulus along direction 3 (Pa).
+        e3: "Pa",
+        /// Contraction along 2 over the stretch along 1.
+        nu12: "",
+        /// Contraction along 3 over the stretch along 1.
+        nu13: "",
+        /// Contraction along 3 over the stretch along 2.
+        nu23: "",
+        /// Shear modulus of 1 and 2 (Pa).
+        g12: "Pa",
+        /// Shear modulus of 1 and 3 (Pa).
+        g13: "Pa",
+        /// Shear modulus of 2 and 3 (Pa).
+        g23: "Pa",
+        /// Largest equivalent stress of the deviator (Pa); zero without a limit.
+        yield_stress: "Pa",
+    }
+}
+
+/// Elastic moduli in the frame of the directions (Pa).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stiffness {
+    /// `C_ij` of stretches.
+    pub stretch: [[f64; 3]; 3],
+    /// Shear moduli of the planes 12, 13, 23.
+    pub shear: [f64; 3],
+    /// `K'`, the modulus of the volume that the equation of state stands for.
+    pub volume: f64,
+}
+
+impl Stiffness {
+    /// None at all.
+    pub const ZERO: Self = Self {
+        stretch: [[0.0; 3]; 3],
+        shear: [0.0; 3],
+        volume: 0.0,
+    };
+
+    /// Stress `11 22 33 12 13 23` (Pa) of an elastic strain of the same components, without `K' tr ε`, which the equation
+    /// of state gives in its place.
+    #[inline(always)]
+    #[must_use]
+    pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
+        let [a, b, c, xy, xz, yz] = *strain;
+        let volume = self.volume * (a + b + c);
+        let normal = |i: usize| dot(&self.stretch[i], &[a, b, c]) - volume;
+        [
+            normal(0),
+            normal(1),
+            normal(2),
+            2.0 * self.shear[0] * xy,
+            2.0 * self.shear[1] * xz,
+            2.0 * self.shear[2] * yz,
+        ]
+    }
+
+    /// Modulus (Pa) of the stiffest plane wave, `ρ c²`: the largest eigenvalue of the [acoustic tensor](Self::acoustic) along the directions
+    /// and half way between two of them.
+    #[inline(always)]
+    #[must_use]
+    pub fn wave_modulus(&self) -> f64 {
+        let c = &self.stretch;
+        let mut largest = c[0][0];
+        for (plane, [i, j]) in [[0, 1], [0, 2], [1, 2]].into_iter().enumerate() {
+            let g = self.shear[plane];
+            let (middle, apart) = (0.25 * (c[i][i] + c[j][j]), 0.25 * (c[i][i] - c[j][j]));
+            let across = 0.5 * (c[i][j] + g);
+            let between = middle + 0.5 * g + (apart * apart + across * across).sqrt();
+            largest = at_least(at_least(largest, c[j][j]), at_least(g, between));
+        }
+        largest
+    }
+
+    /// The acoustic tensor `n C n` (Pa) of a direction n as `xx yy zz xy xz yz`: its eigenvalues are `ρ c²` of plane waves.
+    #[must_use]
+    pub fn acoustic(&self, n: &[f64; 3]) -> [f64; 6] {
+        let (c, [g12, g13, g23]) = (&self.stretch, self.shear);
+        let [x, y, z] = n.map(|component| component * component);
+        [
+            c[0][0] * x + g12 * y + g13 * z,
+            g12 * x + c[1][1] * y + g23 * z,
+            g13 * x + g23 * y + c[2][2] * z,
+            (c[0][1] + g12) * n[0] * n[1],
+            (c[0][2] + g13) * n[0] * n[2],
+            (c[1][2] + g23) * n[1] * n[2],
+        ]
+    }
+}
+
+impl Orthotropic {
+    /// Compliances `S_ij` of stretches (1/Pa).
+    fn compliance(&self) -> [[f64; 3]; 3] {
+        let [a, b, c] = [self.e1, self.e2, self.e3].map(|modulus| 1.0 / modulus);
+        let (ab, ac, bc) = (-self.nu12 * a, -self.nu13 * a, -self.nu23 * b);
+        [[a, ab, ac], [ab, b, bc], [ac, bc, c]]
+    }
+
+    /// The moduli: the inverse of the compliances.
+    #[inline(always)]
+    #[must_use]
+    pub fn stiffness(&self) -> Stiffness {
+        let s = self.compliance();
+        let minor = |i: usize, j: usize| {
+            let ([a, b], [c, d]) = (others(i), others(j));
+            s[a][c] * s[b][d] - s[a][d] * s[b][c]
+        };
+        let cofactors = [
+            [minor(0, 0), -minor(0, 1), minor(0, 2)],
+            [-minor(1, 0), minor(1, 1), -minor(1, 2)],
+            [minor(2, 0), -minor(2, 1), minor(2, 2)],
+        ];
+        let over = 1.0 / dot(&s[0], &cofactors[0]);
+        let stretch = cofactors.map(|row| row.map(|cofactor| cofactor * over));
+        let sum: f64 = stretch.iter().flatten().sum();
+        Stiffness {
+            stretch,
+            shear: [self.g12, self.g13, self.g23],
+            volume: sum / 9.0,
+        }
+    }
+}
+
+/// The two directions beside one, in ascending order.
+#[inline(always)]
+fn others(i: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][i]
+}
+
+/// Directions 1, 2, 3 of lane k as the rows of a matrix, row-major; those of x, y, z where none are given.
+#[inline(always)]
+pub(super) fn frame(point: &PointBatch, k: usize) -> [f64; 9] {
+    let [a, c] = [&point.fibre, &point.normal].map(|axis| [axis[0][k], axis[1][k], axis[2][k]]);
+    if a == [0.0; 3] {
+        return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+    }
+    let b = [
+        c[1] * a[2] - c[2] * a[1],
+        c[2] * a[0] - c[0] * a[2],
+        c[0] * a[1] - c[1] * a[0],
+    ];
+    [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
+}
+
+/// The transposed matrix.
+#[inline(always)]
+pub(super) fn transposed(a: &[f64; 9]) -> [f64; 9] {
+    [a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]]
+}
+
+/// Turns the directions of lane k by a rotation `q`, row-major, and keeps them orthonormal.
+#[inline(always)]
+fn turn(point: &mut PointBatch, k: usize, from: &[f64; 9], q: &[f64; 9]) {
+    let turned = |first: usize| {
+        let axis = [from[first], from[first + 1], from[first + 2]];
+        [0, 3, 6].map(|row| dot(&[q[row], q[row + 1], q[row + 2]], &axis))
+    };
+    let (a, c) = (turned(0), turned(6));
+    let a = a.map(|component| component / dot(&a, &a).sqrt());
+    let along = dot(&a, &c);
+    let c = [0, 1, 2].map(|i| c[i] - along * a[i]);
+    let c = c.map(|component| component / dot(&c, &c).sqrt());
+    for i in 0..3 {
+        point.fibre[i][k] = a[i];
+        point.normal[i][k] = c[i];
+    }
+}
+
+/// One lane of a symmetric tensor.
+#[inline(always)]
+pub(super) fn symmetric(of: &[Lanes; 6], k: usize) -> [f64; 6] {
+    [of[0][k], of[1][k], of[2][k], of[3][k], of[4][k], of[5][k]]
+}
+
+/// Sets deviator and pressure of lane k to a stress in its `frame` (Pa), which has the pressure of the equation of state
+/// still to come.
+#[inline(always)]
+pub(super) fn bear(point: &mut PointBatch, k: usize, frame: &[f64; 9], stress: &[f64; 6]) {
+    let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+    let deviator = [
+        stress[0] - mean,
+        stress[1] - mean,
+        stress[2] - mean,
+        stress[3],
+        stress[4],
+        stress[5],
+    ];
+    let deviator = conjugate(&transposed(frame), &deviator);
+    for c in 0..6 {
+        point.deviatoric_stress[c][k] = deviator[c];
+    }
+}
+
+/// Square of the equivalent stress (Pa²) of a stress.
+#[inline(always)]
+fn equivalent_squared(s: &[f64; 6]) -> f64 {
+    let [a, b, c] = [s[0] - s[1], s[1] - s[2], s[2] - s[0]];
+    0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])
+}
+
+impl Law for Orthotropic {
+    const STATE: &'static [&'static str] = &[
+        "deviatoric_stress",
+        "plastic_strain",
+        "fibre",
+        "elastic_strain",
+    ];
+    const FOLLOWS_STATE: bool = true;
+
+    fn contradiction(&self) -> Option<Contradiction> {
+        // Positive leading minors of the compliances over their diagonals.
+        let s = self.compliance();
+        let r = |i: usize, j: usize| s[i][j] * s[i][j] / (s[i][i] * s[j][j]);
+        let triple = s[0][1] * s[0][2] * s[1][2] / (s[0][0] * s[1][1] * s[2][2]);
+        let whole = 1.0 - r(0, 1) - r(0, 2) - r(1, 2) + 2.0 * triple;
+        (r(0, 1) >= 1.0 || whole <= 0.0).then_some(Contradiction {
+            keys: &["nu12", "nu13", "nu23"],
+            title: "no matter has these Poisson's ratios: some strain would give energy instead of taking it",
+        })
+    }
+
+    /// That of an isotropic matter with the stiffest wave and the volume of this.
+    fn shear_modulus(&self) -> f64 {
+        let stiffness = self.stiffness();
+        0.75 * (stiffness.wave_modulus() - stiffness.volume)
+    }
+
+    fn yield_stress(&self) -> f64 {
+        if self.yield_stress > 0.0 {
+            self.yield_stress
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    #[inline(always)]
+    fn soften(&self, _point: &PointBatch, now: &mut Conditions) {
+        now.stiffness = self.stiffness();
+    }
+
+    #[inline(never)]
+    fn deform(&self, point: &mut PointBatch, now: &mut Conditions) {
+        let dt = now.dt;
+        for k in 0..LANES {
+            if dt != 0.0 {
+                strain(point, k, dt);
+            }
+            let strain = symmetric(&point.elastic_strain, k);
+            let stress = now.stiffness.stress(&strain);
+            if dt != 0.0 {
+                bear(point, k, &frame(point, k), &stress);
+            }
+            point.pressure[k] -= (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+        }
+    }
+
+    #[inline(always)]
+    fn flow(&self, point: &mut PointBatch, now: &Conditions) {
+        if now.dt == 0.0 || self.yield_stress == 0.0 {
+            return;
+        }
+        self.yields(point, now);
+    }
+}
+
+impl Orthotropic {
+    /// Returns strain and stress to the yield stress.
+    #[inline(never)]
+    fn yields(&self, point: &mut PointBatch, now: &Conditions) {
+        for k in 0..LANES {
+            let strain = symmetric(&point.elastic_strain, k);
+            let stress = now.stiffness.stress(&strain);
+            let square = equivalent_squared(&stress);
+            if square <= self.yield_stress * self.yield_stress || point.damage[k] >= FAILED {
+                continue;
+            }
+            let kept = self.yield_stress / square.sqrt();
+            let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+            point.pressure[k] += mean * (1.0 - kept);
+            // The work of the stress that stays on the strain that goes, over the yield stress.
+            let mut work = 0.0;
+            for c in 0..6 {
+                let twice = if c < 3 { 1.0 } else { 2.0 };
+                let deviator = if c < 3 { stress[c] - mean } else { stress[c] };
+                work += twice * kept * deviator * (1.0 - kept) * strain[c];
+                point.elastic_strain[c][k] *= kept;
+                point.deviatoric_stress[c][k] *= kept;
+            }
+            point.plastic_strain[k] += work / self.yield_stress;
+        }
+    }
+}
+
+/// Advances strain and directions of lane k by a step (s).
+#[inline(always)]
+fn strain(point: &mut PointBatch, k: usize, dt: f64) {
+    if point.damage[k] >= FAILED {
+        for component in &mut point.elastic_strain {
+            component[k] = 0.0;
+        }
+    }
+    let l = |c: usize| point.velocity_gradient[c][k];
+    let half = 0.5 * dt;
+    let rate = [
+        half * l(0),
+        half * l(4),
+        half * l(8),
+        0.5 * half * (l(1) + l(3)),
+        0.5 * half * (l(2) + l(6)),
+        0.5 * half * (l(5) + l(7)),
+    ];
+    let quarter = 0.25 * dt;
+    let q = rotation(
+        quarter * (l(1) - l(3)),
+        quarter * (l(2) - l(6)),
+        quarter * (l(5) - l(7)),
+    );
+    let before = frame(point, k);
+    turn(point, k, &before, &q);
+    let first = conjugate(&before, &rate);
+    let second = conjugate(&frame(point, k), &rate);
+    if point.damage[k] >= FAILED {
+        return;
+    }
+    for c in 0..6 {
+        point.elastic_strain[c][k] += first[c] + second[c];
+    }
+}
