@@ -425,7 +425,8 @@ impl Material {
     #[inline(always)]
     fn compose<const ALL: bool>(&self, batch: &mut PointBatch, dt: f64) -> Lanes {
         let rho0 = self.reference_density;
-        let torn = self.strength.bounds_tension();
+        let cracks = self.failure.hashin.is_some();
+        let torn = self.strength.bounds_tension() || cracks;
         if ALL && (torn || self.failure.follows_state()) {
             point::limit_expansion(batch, rho0, torn);
         }
@@ -434,6 +435,7 @@ impl Material {
         let (response, [shares, crushed]) = match (&self.porosity, &self.eos) {
             (Some(porosity), _) if ALL => porosity.respond(&self.eos, batch, dt != 0.0),
             (_, Eos::Jwl(explosive)) if ALL => (self.burn(explosive, batch, dt), unshared),
+            _ if ALL && cracks => (self.cracked_response(batch), unshared),
             _ => {
                 let response = (self.eos).response(rho0, &batch.density, &batch.specific_energy);
                 (response, unshared)
@@ -490,6 +492,21 @@ impl Material {
     #[must_use]
     pub fn burns(&self) -> bool {
         matches!(self.eos, Eos::Jwl(_))
+    }
+
+    /// The equation of state of the matter between cracks.
+    #[inline(never)]
+    fn cracked_response(&self, batch: &PointBatch) -> eos::Response {
+        let mut density = batch.density;
+        for k in 0..LANES {
+            density[k] = point::between_cracks(batch, k);
+        }
+        let energy = &batch.specific_energy;
+        let mut response = (self.eos).response(self.reference_density, &density, energy);
+        for k in 0..LANES {
+            response.dp_drho[k] *= density[k] / batch.density[k];
+        }
+        response
     }
 
     /// Burns a batch for a step (s).

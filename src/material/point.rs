@@ -11,6 +11,7 @@ mod drucker_prager;
 mod elastic;
 mod failure;
 mod grady_kipp;
+mod hashin;
 mod holmquist_johnson_cook;
 mod holmquist_johnson_cook_failure;
 mod ivanov;
@@ -47,6 +48,8 @@ pub use failure::FAILED;
 use failure::failure_laws;
 pub use failure::{Effect, FailureOptions, Molten, viscous_speed};
 pub use grady_kipp::{Crosses, Flaws, GradyKipp};
+pub(super) use hashin::between_cracks;
+pub use hashin::{Criterion, Hashin};
 pub use holmquist_johnson_cook::HolmquistJohnsonCook;
 pub use holmquist_johnson_cook_failure::HolmquistJohnsonCookFailure;
 pub use ivanov::Ivanov;
@@ -118,6 +121,10 @@ macro_rules! point_fields {
             normal: Vector, Memory;
             /// Elastic strain in the frame of the directions, `11 22 33 12 13 23`.
             elastic_strain: Symmetric, Memory;
+            /// Strain of open cracks across the directions.
+            opening: Vector, Memory;
+            /// Damage of cracks across the directions.
+            crack_damage: Vector, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).
@@ -184,6 +191,8 @@ failure_laws! {
     holmquist_johnson_cook: HolmquistJohnsonCookFailure;
     /// Damage of concrete beyond its failure surface.
     riedel_hiermaier_thoma: RiedelHiermaierThomaFailure;
+    /// Cracks across directions of the matter.
+    hashin: Hashin;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

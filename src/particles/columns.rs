@@ -119,7 +119,7 @@ bitflags! {
 }
 
 /// Bit of the first pair term in a set of options.
-const FIRST_TERM: usize = 33;
+const FIRST_TERM: usize = 34;
 
 macro_rules! owners {
     ($( $(#[$doc:meta])+ $term:ident { $key:ident: $($more:tt)+ } )+) => {
@@ -196,6 +196,8 @@ macro_rules! owners {
                 const BULKING = 1 << 31;
                 /// Materials with directions of their own.
                 const DIRECTIONS = 1 << 32;
+                /// Materials that crack across their directions.
+                const CRACKS = 1 << 33;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

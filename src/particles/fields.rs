@@ -148,6 +148,10 @@ particle_fields! {
     normal: Vector,                       "",       State,    -,              OnDemand, DIRECTIONS;
     /// Elastic strain of such matter in the frame of its directions, 11 22 33 12 13 23.
     elastic_strain: Symmetric as Same,    "",       State,    -,              OnDemand, DIRECTIONS;
+    /// Strain of open cracks across the directions of such matter.
+    opening: Vector as Same,              "",       State,    -,              OnDemand, CRACKS;
+    /// Damage of cracks across the directions 1, 2, 3: of fibres, between them, between layers.
+    crack_damage: Vector as Same,         "",       State,    -,              IfHeld,   CRACKS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

@@ -2,7 +2,8 @@
 
 use crate::support::{batch, equivalent, material, step, stress};
 use material::{
-    Elastic, Eos, LANES, Law, Linear, LinearForm, Material, Orthotropic, PointBatch, Strength,
+    Criterion, Elastic, Eos, Hashin, LANES, Law, Linear, LinearForm, Material, Orthotropic,
+    PointBatch, Strength,
 };
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use numerics::principal::principal;
@@ -242,4 +243,146 @@ fn impossible_ratios_are_refused() {
     ] {
         assert!(law.contradiction().is_some(), "{law:?}");
     }
+}
+
+/// The lamina with strengths; a particle of 1 mm.
+fn cracking() -> Material {
+    let mut lamina = of(LAMINA);
+    lamina.failure.hashin = Some(STRENGTHS);
+    lamina
+}
+
+const SIZE: f64 = 1e-3;
+const STRENGTHS: Hashin = Hashin {
+    t1: 2e9,
+    t2: 60e6,
+    t3: 50e6,
+    s12: 80e6,
+    s13: 80e6,
+    s23: 40e6,
+    gf1: 80e3,
+    gf2: 500.0,
+    gf3: 300.0,
+    criterion: Criterion::Hashin,
+};
+
+fn particle() -> PointBatch {
+    PointBatch {
+        mass: [RHO * SIZE * SIZE * SIZE; LANES],
+        ..turned(&Rotation3::identity())
+    }
+}
+
+/// Strains a point along a direction by `rate` a step, and returns the work (J/m³) of it.
+fn pull(lamina: &Material, points: &mut PointBatch, rate: &Matrix3<f64>, steps: u32) -> f64 {
+    let mut work = 0.0;
+    for _ in 0..steps {
+        let before = if points.pressure[0].is_nan() {
+            Matrix3::zeros()
+        } else {
+            whole(points)
+        };
+        step(lamina, points, rate, 1.0);
+        work += (before + whole(points)).component_mul(rate).sum() * 0.5;
+    }
+    work
+}
+
+/// A crack across a direction opens at its strength, takes its energy over the size, and bears nothing from then on; along
+/// the fibres the matter is as strong as before.
+#[test]
+fn a_crack_takes_its_energy_whatever_the_size() {
+    let lamina = cracking();
+    for (i, strength, energy) in [(2, 50e6, 300.0), (1, 60e6, 500.0), (0, 2e9, 80e3)] {
+        let mut points = particle();
+        let mut rate = Matrix3::zeros();
+        rate[(i, i)] = 1e-5;
+        let (mut work, mut most) = (0.0, 0.0_f64);
+        for _ in 0..12_000 {
+            work += pull(&lamina, &mut points, &rate, 1);
+            most = most.max(whole(&points)[(i, i)]);
+        }
+        assert!(
+            (0.98..1.0 + 1e-9).contains(&(most / strength)),
+            "{i}: {most:e}"
+        );
+        assert!(whole(&points)[(i, i)].abs() < 1e-6 * strength, "{i}");
+        let released = points.failure_energy[0] * RHO * SIZE / energy;
+        assert!((released - 1.0).abs() < 0.05, "{i}: {released}");
+        // Beside it, what is held across by the strain that is kept there.
+        assert!((work * SIZE / energy - 1.0).abs() < 0.08, "{i}: {work:e}");
+        assert_eq!(points.crack_damage[i][0], 1.0);
+        // Fibres break at a stretch at which what is held across has split as well.
+        assert_eq!(points.damage[0], if i == 0 { 1.0 } else { 0.0 });
+        if i == 2 {
+            let mut along = Matrix3::zeros();
+            along[(0, 0)] = 1e-5;
+            pull(&lamina, &mut points, &along, 100);
+            let stress = whole(&points);
+            assert!(stress[(0, 0)] > 1e-3 * LAMINA.e1 && stress[(2, 2)].abs() < 1e3);
+        }
+    }
+}
+
+/// An open crack closes without stress, and bears pressure from then on.
+#[test]
+fn a_crack_closes_before_it_bears_pressure() {
+    let lamina = cracking();
+    let mut points = particle();
+    let mut rate = Matrix3::zeros();
+    rate[(2, 2)] = 1e-5;
+    pull(&lamina, &mut points, &rate, 5000);
+    let work = pull(&lamina, &mut points, &-rate, 4900);
+    assert!(work.abs() < 1.0, "{work}");
+    assert!(points.opening[2][0] > 0.0);
+    pull(&lamina, &mut points, &-rate, 400);
+    assert_eq!(points.opening[2][0], 0.0);
+    let pressed = whole(&points)[(2, 2)];
+    let wanted = -LAMINA.stiffness().stretch[2][2] * 300e-5;
+    assert!(
+        (pressed / wanted - 1.0).abs() < 0.02,
+        "{pressed:e} {wanted:e}"
+    );
+}
+
+/// Shear of layers delaminates them at its strength; with tension beside it, on the ellipse of both.
+#[test]
+fn tension_and_shear_go_together() {
+    for (criterion, both) in [(Criterion::Hashin, 1.0), (Criterion::MaximumStress, 2.0)] {
+        let mut lamina = cracking();
+        lamina.failure.hashin = Some(Hashin {
+            criterion,
+            ..STRENGTHS
+        });
+        let [c33, g23] = [LAMINA.stiffness().stretch[2][2], LAMINA.g23];
+        let mut points = particle();
+        // Both reach their strength at once, each for itself.
+        let (normal, shear) = (50e6 / c33 / 4000.0, 40e6 / (2.0 * g23) / 4000.0);
+        let mut rate = Matrix3::zeros();
+        rate[(2, 2)] = normal;
+        rate[(1, 2)] = shear;
+        rate[(2, 1)] = shear;
+        let mut most = 0.0_f64;
+        for _ in 0..6000 {
+            pull(&lamina, &mut points, &rate, 1);
+            let stress = whole(&points);
+            let sum = (stress[(2, 2)] / 50e6).powi(2) + (stress[(1, 2)] / 40e6).powi(2);
+            most = most.max(sum);
+        }
+        assert!((most / both - 1.0).abs() < 2e-3, "{most}");
+        assert!(points.crack_damage[2][0] > 0.0 && points.crack_damage[0][0] == 0.0);
+    }
+}
+
+/// Cracks across all directions are failure.
+#[test]
+fn cracks_across_all_directions_are_failure() {
+    let lamina = cracking();
+    let mut points = particle();
+    let rate = Matrix3::identity() * 1e-4;
+    pull(&lamina, &mut points, &rate, 3000);
+    assert_eq!(points.damage[0], 1.0);
+    assert!(whole(&points).norm() == 0.0, "{}", whole(&points));
+    pull(&lamina, &mut points, &-rate, 3200);
+    assert!(points.pressure[0] > 0.0 && equivalent(&points) == 0.0);
 }

@@ -36,6 +36,7 @@ mod gravity;
 mod hit_bar;
 mod hole;
 mod options;
+mod orthotropic;
 mod penalty;
 mod porous;
 mod quarter;

@@ -44,7 +44,7 @@ use crate::{at_least, at_most};
 use numerics::principal::principal;
 
 /// Least density of failed matter, over that of the reference state.
-const SPRAY: f64 = 0.1;
+pub(super) const SPRAY: f64 = 0.1;
 
 /// Failed matter does not expand beyond spray, nor does any whose strength bounds the tension (`torn`).
 #[inline(always)]

@@ -11,8 +11,8 @@ use crate::input::forms::{Named, OneOrMany, OrNone};
 use crate::input::profile::ProfileParams;
 use crate::input::quantity::{Extent, Kind, Length, PLAIN, Quantity, Time};
 use material::{
-    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
-    RateForm, StrengthOf,
+    AfterSpall, Burn, CompactionDamage, Coupling, Criterion, Crosses, Effect, Flaws, LinearForm,
+    Molten, RateForm, StrengthOf,
 };
 use model::{
     Axis, BodyForm, ContactDirection, FibrePattern, Include, LatticeKind, NumericalFailurePolicy,
@@ -253,6 +253,7 @@ described_words!(
     Axis,
     ContactDirection,
     Coupling,
+    Criterion,
     Crosses,
     Effect,
     FibrePattern,

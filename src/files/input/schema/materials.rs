@@ -9,8 +9,8 @@ use crate::input::quantity::{
     Rate, SpecificEnergy, SpecificHeat, Temperature, Velocity, Viscosity,
 };
 use material::{
-    AfterSpall, Burn, CompactionDamage, Coupling, Crosses, Effect, Flaws, LinearForm, Molten,
-    RateForm, StrengthOf,
+    AfterSpall, Burn, CompactionDamage, Coupling, Criterion, Crosses, Effect, Flaws, LinearForm,
+    Molten, RateForm, StrengthOf,
 };
 
 optional_tables! {
@@ -493,6 +493,29 @@ macro_rules! failure_laws {
                 d2: Spanned<f64>, NotNegative;
                 /// Least failure strain.
                 least_strain: Spanned<f64> = 0.01, Positive;
+            }
+            /// `failure.hashin`: cracks across the directions of the matter.
+            hashin: HashinParams => Hashin {
+                /// Strength against tension along direction 1.
+                t1: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against tension along direction 2.
+                t2: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against tension along direction 3.
+                t3: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against shear of 1 and 2.
+                s12: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against shear of 1 and 3.
+                s13: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against shear of 2 and 3.
+                s23: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Energy of a crack across direction 1.
+                gf1: Placed<FractureEnergy> = "0", NotNegative => "fails at once";
+                /// Energy of a crack across direction 2.
+                gf2: Placed<FractureEnergy> = "0", NotNegative => "fails at once";
+                /// Energy of a crack across direction 3.
+                gf3: Placed<FractureEnergy> = "0", NotNegative => "fails at once";
+                /// How tension and shear go together.
+                criterion: Spanned<Criterion> = Criterion::Hashin;
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

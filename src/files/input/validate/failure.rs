@@ -248,6 +248,14 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         && !matches!(strength, Strength::RiedelHiermaierThoma(_))
     {
         Some("`riedel_hiermaier_thoma` damages the strength of that name alone")
+    } else if failure.hashin.is_some() && !matches!(strength, Strength::Orthotropic(_)) {
+        Some("`hashin` cracks matter of the strength `orthotropic` alone")
+    } else if matches!(strength, Strength::Orthotropic(_))
+        && failure.options.effect != Effect::StrengthLost
+    {
+        Some(
+            "matter with directions of its own loses strength at once, or by the cracks of `hashin`",
+        )
     } else if strains && !strength.yields() {
         Some("a failure strain is a plastic one, and this material does not yield")
     } else {

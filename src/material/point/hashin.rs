@@ -1,0 +1,281 @@
+//! Cracks across the directions of matter that has some of its own: broken fibres, split layers, delamination.
+//!
+//! A crack across direction i begins where the tractions on it reach their strengths,
+//!
+//! ```text
+//! f_i² = (⟨σ_i⟩/T_i)² + (τ_ij/S_ij)² + (τ_ik/S_ik)² = 1        (hashin)
+//! f_i  = max(⟨σ_i⟩/T_i, |τ|/S)                                 (maximum_stress)
+//! ```
+//!
+//! In the second one shear of the plane 12 counts for direction 2, that of 13 and 23 for 3. Fibres along 1 break by shear only
+//! beside tension. Sources: Hashin (1980), *Failure criteria for unidirectional fiber composites*, J. Appl. Mech. 47, 329; for all
+//! three directions, with softening, Clegg et al. (2006), Int. J. Impact Eng. 33, 190.
+//!
+//! From there on the tractions fall with the energy that the crack has taken, `G_i` over the size L of the particle when they
+//! are gone, as those of a band that softens linearly (Bažant & Oh 1983): with damage d, `f_i ≤ 1 − d` and
+//!
+//! ```text
+//! (1 − d)² = 1 − W L/G_i,    dW = ½ (1 − λ²) (⟨σ_i⟩²/C_ii + τ_ij²/G_ij + τ_ik²/G_ik)
+//! ```
+//!
+//! where a step leaves λ of the tractions. What they lose, strain of cracks takes over from the elastic strain; that across the
+//! crack is its *opening*, which closes without stress before the crack bears pressure again. It is in the density of the whole
+//! and not in that of the matter, whose pressure is that at `ρ exp Σ o_i`. Shear over an open or closed crack that has
+//! taken all of `G_i` is zero: there is no friction.
+//!
+//! Matter with cracks across all three directions has failed.
+
+use serde::Deserialize;
+
+use super::orthotropic::{bear, frame, symmetric};
+use super::{Conditions, FAILED, LANES, Law, PointBatch};
+use crate::{at_least, at_most};
+
+/// How strengths against tension and shear go together.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Criterion {
+    /// The sum of their squares.
+    #[default]
+    Hashin,
+    /// Each for itself.
+    MaximumStress,
+}
+
+impl Criterion {
+    /// Its name in the input.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hashin => "hashin",
+            Self::MaximumStress => "maximum_stress",
+        }
+    }
+}
+
+law! {
+    /// Cracks across the directions of the matter. Zero stands for no limit, of an energy for failure at once.
+    Hashin {
+        /// Strength against tension along direction 1 (Pa).
+        t1: "Pa",
+        /// Strength against tension along direction 2 (Pa).
+        t2: "Pa",
+        /// Strength against tension along direction 3 (Pa).
+        t3: "Pa",
+        /// Strength against shear of 1 and 2 (Pa).
+        s12: "Pa",
+        /// Strength against shear of 1 and 3 (Pa).
+        s13: "Pa",
+        /// Strength against shear of 2 and 3 (Pa).
+        s23: "Pa",
+        /// Energy of a crack across direction 1 (J/m²).
+        gf1: "J/m^2",
+        /// Energy of a crack across direction 2 (J/m²).
+        gf2: "J/m^2",
+        /// Energy of a crack across direction 3 (J/m²).
+        gf3: "J/m^2",
+        /// How tension and shear go together.
+        criterion: Criterion,
+    }
+}
+
+/// Components of a symmetric tensor `11 22 33 12 13 23` that shear the plane across a direction.
+const SHEARS: [[usize; 2]; 3] = [[3, 4], [3, 5], [4, 5]];
+/// The order in which cracks take from the stress: what is weak first.
+const ORDER: [usize; 3] = [2, 1, 0];
+
+/// Density (kg/m³) of the matter between the cracks of lane k.
+#[inline(always)]
+pub(crate) fn between_cracks(point: &PointBatch, k: usize) -> f64 {
+    let open = point.opening[0][k] + point.opening[1][k] + point.opening[2][k];
+    if open > 0.0 && point.damage[k] < FAILED {
+        point.density[k] * libm::exp(open)
+    } else {
+        point.density[k]
+    }
+}
+
+/// Stress of a point in its frame, from its elastic strain.
+struct Cracked<'a> {
+    now: &'a Conditions,
+    /// Elastic strain `11 22 33 12 13 23`.
+    strain: [f64; 6],
+    /// Pressure (Pa).
+    pressure: f64,
+}
+
+impl Cracked<'_> {
+    /// Stress `11 22 33 12 13 23` (Pa).
+    fn stress(&self) -> [f64; 6] {
+        let mut stress = self.now.stiffness.stress(&self.strain);
+        let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+        for normal in &mut stress[..3] {
+            *normal -= mean + self.pressure;
+        }
+        stress
+    }
+
+    /// Lets a crack across direction i take over a stretch.
+    fn open(&mut self, i: usize, stretch: f64) {
+        let before = self.mean();
+        self.strain[i] -= stretch;
+        self.pressure += before - self.mean() + self.now.stiffness.volume * stretch;
+    }
+
+    /// Mean of the normal stresses (Pa), without the pressure of the equation of state.
+    fn mean(&self) -> f64 {
+        let stress = self.now.stiffness.stress(&self.strain);
+        (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0)
+    }
+}
+
+impl Hashin {
+    /// How near to their strengths tractions (Pa) across direction i are: `⟨σ_i⟩` and those of shear.
+    fn progress(&self, i: usize, normal: f64, stress: &[f64; 6]) -> f64 {
+        let over = |stress: f64, strength: f64| {
+            if strength > 0.0 {
+                stress.abs() / strength
+            } else {
+                0.0
+            }
+        };
+        let pull = over(normal, [self.t1, self.t2, self.t3][i]);
+        let strengths = [self.s12, self.s13, self.s23];
+        let shear = SHEARS[i].map(|c| over(stress[c], strengths[c - 3]));
+        match self.criterion {
+            Criterion::Hashin => (pull * pull + shear[0] * shear[0] + shear[1] * shear[1]).sqrt(),
+            Criterion::MaximumStress => at_least(pull, self.largest_shear(i, shear)),
+        }
+    }
+
+    /// The one that counts for direction i by itself.
+    fn largest_shear(&self, i: usize, [first, second]: [f64; 2]) -> f64 {
+        match i {
+            0 => 0.0,
+            1 => first,
+            _ => at_least(first, second),
+        }
+    }
+
+    /// Opens and closes the cracks of lane k.
+    fn crack(&self, point: &mut PointBatch, k: usize, now: &Conditions) {
+        let mut of = Cracked {
+            now,
+            strain: symmetric(&point.elastic_strain, k),
+            pressure: point.pressure[k],
+        };
+        let mut changed = false;
+        for i in ORDER {
+            let normal = of.stress()[i];
+            if normal < 0.0 && point.opening[i][k] > 0.0 {
+                let stretch = at_most(point.opening[i][k], -normal / now.stiffness.stretch[i][i]);
+                point.opening[i][k] -= stretch;
+                of.open(i, -stretch);
+                changed = true;
+            }
+        }
+        let size = now.size(point, k);
+        for i in ORDER {
+            changed |= self.part(&mut of, point, k, i, size);
+        }
+        if !changed {
+            return;
+        }
+        for c in 0..6 {
+            point.elastic_strain[c][k] = of.strain[c];
+        }
+        point.pressure[k] = of.pressure;
+        bear(point, k, &frame(point, k), &of.stress());
+        let [a, b, c] = [0, 1, 2].map(|i| point.crack_damage[i][k]);
+        point.damage[k] = at_least(point.damage[k], at_most(a, at_most(b, c)));
+    }
+
+    /// Advances the crack across direction i in a particle of a size (m); true if it has grown or opened.
+    fn part(
+        &self,
+        of: &mut Cracked,
+        point: &mut PointBatch,
+        k: usize,
+        i: usize,
+        size: f64,
+    ) -> bool {
+        let stress = of.stress();
+        let normal = at_least(stress[i], 0.0);
+        if i == 0 && normal == 0.0 {
+            return false;
+        }
+        let left = 1.0 - point.crack_damage[i][k];
+        let progress = self.progress(i, normal, &stress);
+        if progress <= left {
+            return false;
+        }
+        let stiffness = &of.now.stiffness;
+        let across = stiffness.stretch[i][i];
+        let mut twice = normal * normal / across;
+        for c in SHEARS[i] {
+            twice += stress[c] * stress[c] / stiffness.shear[c - 3];
+        }
+        let all = 2.0 * [self.gf1, self.gf2, self.gf3][i] / size;
+        // (1 − d)² after the step, where the tractions end on the strengths that are left.
+        let square = progress * progress;
+        let kept_square = if all > 0.0 && twice / all < square {
+            let share = twice / all;
+            at_most(
+                at_least((left * left - share) / (1.0 - share / square), 0.0),
+                left * left,
+            )
+        } else {
+            0.0
+        };
+        let strength = kept_square.sqrt();
+        let kept = strength / progress;
+        let stretch = (1.0 - kept) * normal / across;
+        of.open(i, stretch);
+        for c in SHEARS[i] {
+            of.strain[c] *= kept;
+        }
+        // Spray at its least density opens no farther.
+        if point.density[k] > super::damage::SPRAY * of.now.reference_density {
+            point.opening[i][k] += stretch;
+        }
+        point.crack_damage[i][k] = 1.0 - strength;
+        point.failure_energy[k] += 0.5 * (1.0 - kept * kept) * twice / point.density[k];
+        true
+    }
+
+    /// Opens and closes all cracks.
+    #[inline(never)]
+    fn damage(&self, point: &mut PointBatch, now: &Conditions) {
+        for k in 0..LANES {
+            if point.damage[k] < FAILED {
+                self.crack(point, k, now);
+            }
+        }
+    }
+}
+
+impl Law for Hashin {
+    const STATE: &'static [&'static str] = &[
+        "deviatoric_stress",
+        "damage",
+        "failure_energy",
+        "elastic_strain",
+        "opening",
+        "crack_damage",
+    ];
+    const FOLLOWS_STATE: bool = true;
+    const HAS_ONSET: bool = false;
+    const ASKS_IDENTITY: bool = true;
+
+    #[inline(always)]
+    fn fail(&self, point: &mut PointBatch, now: &Conditions) {
+        if !now.options.softens() {
+            self.damage(point, now);
+        }
+    }
+
+    #[inline(always)]
+    fn open(&self, point: &mut PointBatch, now: &Conditions) {
+        self.damage(point, now);
+    }
+}
