@@ -101,7 +101,7 @@ impl Material {
     #[inline(always)]
     #[must_use]
     pub fn shear_modulus(&self) -> f64 {
-        let shear_modulus = self.strength.shear_modulus();
+        let shear_modulus = self.strength.shear_modulus_beside(self.bulk_modulus());
         match &self.porosity {
             None => shear_modulus,
             Some(porosity) => shear_modulus * porosity.shear_share(),
@@ -447,7 +447,11 @@ impl Material {
             self.strength.limit_tension(batch);
         }
         self.failure.limit_tension(batch);
-        let moduli = [self.strength.shear_modulus(), self.bulk_modulus()];
+        let bulk_modulus = self.bulk_modulus();
+        let moduli = [
+            self.strength.shear_modulus_beside(bulk_modulus),
+            bulk_modulus,
+        ];
         let mut now = Conditions::new(dt, rho0, moduli);
         now.options = self.failure.options;
         if ALL && let Some(porosity) = &self.porosity {
@@ -497,14 +501,16 @@ impl Material {
     /// The equation of state of the matter between cracks.
     #[inline(never)]
     fn cracked_response(&self, batch: &PointBatch) -> eos::Response {
-        let mut density = batch.density;
+        let (mut density, mut shares) = (batch.density, [1.0; LANES]);
         for k in 0..LANES {
-            density[k] = point::between_cracks(batch, k);
+            shares[k] = point::solid_share(batch, k);
+            density[k] /= shares[k];
         }
         let energy = &batch.specific_energy;
         let mut response = (self.eos).response(self.reference_density, &density, energy);
         for k in 0..LANES {
-            response.dp_drho[k] *= density[k] / batch.density[k];
+            response.pressure[k] *= shares[k];
+            response.dp_de[k] *= shares[k];
         }
         response
     }

@@ -17,8 +17,33 @@ pub enum FibrePattern {
     Wrapped,
 }
 
+/// Layers on each other whose fibres are turned about direction 3.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layup {
+    /// Thickness of a layer (m).
+    pub ply: f64,
+    /// Turns of layers (rad), from `centre` on along direction 3; the first follows the last.
+    pub angles: Vec<f64>,
+}
+
+impl Layup {
+    /// Turn (rad) of the layer at a height (m).
+    fn at(&self, height: f64) -> f64 {
+        let count = self.angles.len() as f64;
+        let layer = (height / self.ply).floor();
+        let place = layer - count * (layer / count).floor();
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a place in the list"
+        )]
+        let place = (place as usize).min(self.angles.len() - 1);
+        self.angles[place]
+    }
+}
+
 /// The directions of the matter of a body at the start.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Fibres {
     /// How they depend on the place.
     pub pattern: FibrePattern,
@@ -31,6 +56,8 @@ pub struct Fibres {
     pub centre: Vec3,
     /// Turn of directions 1 and 2 about 3 (rad).
     pub angle: f64,
+    /// Layers that are turned beside that.
+    pub layup: Option<Layup>,
 }
 
 impl Fibres {
@@ -46,9 +73,20 @@ impl Fibres {
             FibrePattern::Radial => (outward, self.normal),
             FibrePattern::Wrapped => (around, outward),
         };
+        let layer = self.layup.as_ref();
+        let angle = self.angle + layer.map_or(0.0, |layup| layup.at(from.dot(&normal)));
         let second = normal.cross(&along);
-        let turned = along * libm::cos(self.angle) + second * libm::sin(self.angle);
+        let turned = along * libm::cos(angle) + second * libm::sin(angle);
         [turned, normal]
+    }
+
+    /// Turns of directions 1 and 2 about 3 (rad) that are somewhere.
+    pub fn angles(&self) -> impl Iterator<Item = f64> {
+        let layers = self
+            .layup
+            .as_ref()
+            .map_or(&[0.0][..], |layup| &layup.angles);
+        layers.iter().map(|layer| self.angle + layer)
     }
 }
 
@@ -64,6 +102,7 @@ mod tests {
             normal: Vec3::z(),
             centre: Vec3::new(1.0, 0.0, 0.0),
             angle,
+            layup: None,
         };
         let place = Vec3::new(1.0, 2.0, 5.0);
         let close = |found: [Vec3; 2], wanted: [Vec3; 2]| {
@@ -80,5 +119,15 @@ mod tests {
         close(of(FibrePattern::Wrapped, right).at(&place), [z, y]);
         let on_axis = Vec3::new(1.0, 0.0, 3.0);
         close(of(FibrePattern::Radial, 0.0).at(&on_axis), [x, z]);
+    }
+
+    #[test]
+    fn layers_follow_each_other() {
+        let layup = Layup {
+            ply: 0.5,
+            angles: vec![0.0, 1.0, 2.0],
+        };
+        let found = [-0.1, 0.1, 0.6, 1.4, 1.6, 3.2].map(|height| layup.at(height));
+        assert_eq!(found, [2.0, 0.0, 1.0, 2.0, 0.0, 0.0]);
     }
 }

@@ -46,7 +46,7 @@ pub use control::{
     ClockInterval, DefaultFactors, DomainOptions, OutputOptions, Precision, RunControl, Sharing,
     SmoothingLength, SnapshotSchedule, SphForm, SphOptions, TimeStepOptions,
 };
-pub use fibres::{FibrePattern, Fibres};
+pub use fibres::{FibrePattern, Fibres, Layup};
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};
 pub use gauge::{Cadence, Gauge, Witness};

@@ -21,13 +21,15 @@ const LAMINA: Orthotropic = Orthotropic {
     g12: 5e9,
     g13: 4.5e9,
     g23: 3.5e9,
-    yield_stress: 0.0,
+    crush_stress: 0.0,
 };
 
-/// With the modulus of volume of its own stiffness.
+/// A modulus of volume that is not that of the directions (Pa).
+const BULK: f64 = 15e9;
+
 fn of(law: Orthotropic) -> Material {
     let eos = Eos::Linear(Linear {
-        bulk_modulus: law.stiffness().volume,
+        bulk_modulus: BULK,
         form: LinearForm::Logarithmic,
     });
     material(RHO, eos, Strength::Orthotropic(law))
@@ -134,10 +136,9 @@ fn equal_directions_are_isotropic() {
         g12: g,
         g13: g,
         g23: g,
-        yield_stress: 0.0,
+        crush_stress: 0.0,
     };
     let bulk = e / (3.0 * (1.0 - 2.0 * nu));
-    assert!((law.stiffness().volume / bulk - 1.0).abs() < 1e-14);
     assert!((law.shear_modulus() / g - 1.0).abs() < 1e-13);
     let eos = Eos::Linear(Linear {
         bulk_modulus: bulk,
@@ -173,10 +174,10 @@ fn no_wave_is_stiffer() {
         g12: 12e9,
         g13: 1.9e9,
         g23: 1.9e9,
-        yield_stress: 0.0,
+        crush_stress: 0.0,
     };
     for law in [LAMINA, woven] {
-        let stiffness = law.stiffness();
+        let stiffness = law.stiffness(BULK);
         let mut largest = 0.0_f64;
         for polar in 0..=90 {
             for about in 0..=90 {
@@ -198,18 +199,18 @@ fn shape_and_volume_are_coupled_up_to_the_limit() {
     let mut points = turned(&Rotation3::identity());
     let shape = Matrix3::from_diagonal(&Vector3::new(2e-3, -1e-3, -1e-3));
     step(&lamina, &mut points, &shape, 1.0);
-    let c = LAMINA.stiffness().stretch;
+    let c = LAMINA.stiffness(BULK).stretch;
     let row = |i: usize| 2.0 * c[i][0] - c[i][1] - c[i][2];
     let pressure = -1e-3 * (row(0) + row(1) + row(2)) / 3.0;
     assert!((points.pressure[0] / pressure - 1.0).abs() < 1e-12);
 
     let bounded = Orthotropic {
-        yield_stress: 20e6,
+        crush_stress: 20e6,
         ..LAMINA
     };
     let mut points = turned(&Rotation3::from_euler_angles(0.1, 0.2, 0.3));
     let mut work = 0.0;
-    let rate = Matrix3::new(3.0, 1.0, 0.0, 1.0, -2.0, 0.5, 0.0, 0.5, -1.0);
+    let rate = Matrix3::new(-3.0, 1.0, 0.0, 1.0, 2.0, 0.5, 0.0, 0.5, 1.0);
     let dt = 1e-5;
     for _ in 0..2000 {
         let before = whole(&points);
@@ -312,14 +313,15 @@ fn a_crack_takes_its_energy_whatever_the_size() {
         // Beside it, what is held across by the strain that is kept there.
         assert!((work * SIZE / energy - 1.0).abs() < 0.08, "{i}: {work:e}");
         assert_eq!(points.crack_damage[i][0], 1.0);
-        // Fibres break at a stretch at which what is held across has split as well.
-        assert_eq!(points.damage[0], if i == 0 { 1.0 } else { 0.0 });
+        // Fibres break at a stretch at which what is held across begins to split.
+        assert!(i == 0 || points.damage[0] == 0.0);
         if i == 2 {
             let mut along = Matrix3::zeros();
             along[(0, 0)] = 1e-5;
             pull(&lamina, &mut points, &along, 100);
             let stress = whole(&points);
-            assert!(stress[(0, 0)] > 1e-3 * LAMINA.e1 && stress[(2, 2)].abs() < 1e3);
+            // Parted layers fill .89 of the volume.
+            assert!(stress[(0, 0)] > 0.88e-3 * LAMINA.e1 && stress[(2, 2)].abs() < 1e3);
         }
     }
 }
@@ -338,7 +340,7 @@ fn a_crack_closes_before_it_bears_pressure() {
     pull(&lamina, &mut points, &-rate, 400);
     assert_eq!(points.opening[2][0], 0.0);
     let pressed = whole(&points)[(2, 2)];
-    let wanted = -LAMINA.stiffness().stretch[2][2] * 300e-5;
+    let wanted = -LAMINA.stiffness(BULK).stretch[2][2] * 300e-5;
     assert!(
         (pressed / wanted - 1.0).abs() < 0.02,
         "{pressed:e} {wanted:e}"
@@ -354,7 +356,7 @@ fn tension_and_shear_go_together() {
             criterion,
             ..STRENGTHS
         });
-        let [c33, g23] = [LAMINA.stiffness().stretch[2][2], LAMINA.g23];
+        let [c33, g23] = [LAMINA.stiffness(BULK).stretch[2][2], LAMINA.g23];
         let mut points = particle();
         // Both reach their strength at once, each for itself.
         let (normal, shear) = (50e6 / c33 / 4000.0, 40e6 / (2.0 * g23) / 4000.0);

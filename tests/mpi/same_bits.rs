@@ -268,6 +268,10 @@ fn failure_on_any_ranks_and_through_restarts() {
     let shear = "material.aluminium.failure={ ivanov = {}, principal_stress.limit = \"0.5 GPa\", fracture_energy = \"10 kJ/m^2\" }";
     let ceramic = "material.aluminium.strength={ johnson_holmquist_2 = { shear_modulus = \"28.6 GPa\", a = 0.93, b = 0.31, m = 0.6, \
         n = 0.6, max_tension = \"0.2 GPa\", hugoniot_limit = \"2.8 GPa\", hugoniot_pressure = \"1.46 GPa\" } }";
+    let layers = "material.aluminium.strength={ orthotropic = { e1 = \"140 GPa\", e2 = \"40 GPa\", e3 = \"20 GPa\", \
+        nu12 = 0.3, nu13 = 0.3, nu23 = 0.3, g12 = \"10 GPa\", g13 = \"10 GPa\", g23 = \"8 GPa\", crush_stress = \"1 GPa\" } }";
+    let laminate = "material.aluminium.failure={ hashin = { t1 = \"2 GPa\", t2 = \"0.3 GPa\", t3 = \"0.1 GPa\", \
+        s12 = \"0.2 GPa\", s13 = \"0.2 GPa\", s23 = \"0.1 GPa\", gf1 = \"1 kJ/m^2\", gf2 = \"100 J/m^2\", gf3 = \"50 J/m^2\" } }";
     let bulking = "material.aluminium.failure={ johnson_holmquist_2 = { d1 = 0.005, d2 = 1 } }";
     let fields = |names: &str| format!("output.fields=[\"damage\", \"failure_energy\", {names}]");
     let all = [
@@ -284,6 +288,12 @@ fn failure_on_any_ranks_and_through_restarts() {
             fields("\"failure_onset\", \"neighbour_strain\""),
         ),
         ("flaws", flaws, elastic, fields("\"flaws\"")),
+        (
+            "laminate",
+            laminate,
+            layers,
+            fields("\"crack_damage\", \"opening\", \"elastic_strain\", \"fibre\", \"normal\""),
+        ),
         (
             "tension",
             tension,
@@ -689,6 +699,7 @@ fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
         "rubber",
         "iron-tillotson",
         "air",
+        "carbon-epoxy",
     ];
     for (n, name) in (0_u32..).zip(materials) {
         let x = 0.6 * f64::from(n);

@@ -10,7 +10,7 @@ fn speed(fibres: &str) -> f64 {
     let mut s = start(inline(&format!(
         "dimension = 1\nspacing = \"0.5 mm\"\n[run]\nend_time = \"24 us\"\n\
          [material.lamina]\ndensity = \"1600 kg/m^3\"\n\
-         eos.linear = {{ bulk_modulus = \"21.6612 GPa\" }}\n\
+         eos.linear = {{ bulk_modulus = \"15 GPa\" }}\n\
          strength.orthotropic = {{ e1 = \"140 GPa\", e2 = \"10 GPa\", e3 = \"9 GPa\", nu12 = 0.3, nu13 = 0.25, \
          nu23 = 0.45, g12 = \"5 GPa\", g13 = \"4.5 GPa\", g23 = \"3.5 GPa\" }}\n\
          [[body]]\nname = \"bar\"\nmaterial = \"lamina\"\n\

@@ -25,6 +25,7 @@ const INPUTS: &[&str] = &[
     "hertz-cylinder",
     "hertz-disc",
     "hiermaier-1997",
+    "laminate-impact",
     "nakamura-1991",
     "noh",
     "oblique-30",

@@ -190,10 +190,14 @@ tables! {
         normal: Option<Spanned<AxisParams>> => "z";
         /// Axis of the other patterns.
         axis: Option<Spanned<AxisParams>> => "z";
-        /// A point of the axis.
+        /// A point of the axis, from which layers count.
         centre: Option<Spanned<Vec<Placed<Length>>>> => "the origin";
         /// Turn of directions 1 and 2 about 3.
         angle: Option<Placed<Angle>> = "0", Any;
+        /// Turns of layers beside that, from `centre` on along direction 3; the first follows the last.
+        layup: Option<Spanned<Vec<Placed<Angle>>>> => "none";
+        /// Thickness of a layer of `layup`.
+        ply: Option<Placed<Length>>, Positive;
     }
 
     /// `[[load]]`

@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ceramics`, `ductile` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `composites`, `ductile` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -30,6 +30,7 @@ macro_rules! records {
 
 mod alloys;
 mod ceramics;
+mod composites;
 mod ductile;
 mod explosives;
 mod fluids;
@@ -57,6 +58,7 @@ fn records() -> Vec<&'static Record> {
     let lists = [
         alloys::RECORDS,
         ceramics::RECORDS,
+        composites::RECORDS,
         ductile::RECORDS,
         explosives::RECORDS,
         fluids::RECORDS,

@@ -20,14 +20,14 @@
 //!
 //! where a step leaves λ of the tractions. What they lose, strain of cracks takes over from the elastic strain; that across the
 //! crack is its *opening*, which closes without stress before the crack bears pressure again. It is in the density of the whole
-//! and not in that of the matter, whose pressure is that at `ρ exp Σ o_i`. Shear over an open or closed crack that has
+//! and not in that of the matter: with `φ = exp(−Σ o_i)` the stress is φ times that of the matter, at the density ρ/φ. Shear over an open or closed crack that has
 //! taken all of `G_i` is zero: there is no friction.
 //!
 //! Matter with cracks across all three directions has failed.
 
 use serde::Deserialize;
 
-use super::orthotropic::{bear, frame, symmetric};
+use super::orthotropic::{bear, frame, solid_share, symmetric};
 use super::{Conditions, FAILED, LANES, Law, PointBatch};
 use crate::{at_least, at_most};
 
@@ -84,18 +84,7 @@ const SHEARS: [[usize; 2]; 3] = [[3, 4], [3, 5], [4, 5]];
 /// The order in which cracks take from the stress: what is weak first.
 const ORDER: [usize; 3] = [2, 1, 0];
 
-/// Density (kg/m³) of the matter between the cracks of lane k.
-#[inline(always)]
-pub(crate) fn between_cracks(point: &PointBatch, k: usize) -> f64 {
-    let open = point.opening[0][k] + point.opening[1][k] + point.opening[2][k];
-    if open > 0.0 && point.damage[k] < FAILED {
-        point.density[k] * libm::exp(open)
-    } else {
-        point.density[k]
-    }
-}
-
-/// Stress of a point in its frame, from its elastic strain.
+/// Stress of the matter of a point in its frame, from its elastic strain.
 struct Cracked<'a> {
     now: &'a Conditions,
     /// Elastic strain `11 22 33 12 13 23`.
@@ -129,19 +118,26 @@ impl Cracked<'_> {
     }
 }
 
+/// A stress over its strength, which is without limit if that is zero.
+#[inline(always)]
+fn over(stress: f64, strength: f64) -> f64 {
+    if strength > 0.0 {
+        stress.abs() / strength
+    } else {
+        0.0
+    }
+}
+
 impl Hashin {
     /// How near to their strengths tractions (Pa) across direction i are: `⟨σ_i⟩` and those of shear.
     fn progress(&self, i: usize, normal: f64, stress: &[f64; 6]) -> f64 {
-        let over = |stress: f64, strength: f64| {
-            if strength > 0.0 {
-                stress.abs() / strength
-            } else {
-                0.0
-            }
-        };
         let pull = over(normal, [self.t1, self.t2, self.t3][i]);
         let strengths = [self.s12, self.s13, self.s23];
-        let shear = SHEARS[i].map(|c| over(stress[c], strengths[c - 3]));
+        let [a, b] = SHEARS[i];
+        let shear = [
+            over(stress[a], strengths[a - 3]),
+            over(stress[b], strengths[b - 3]),
+        ];
         match self.criterion {
             Criterion::Hashin => (pull * pull + shear[0] * shear[0] + shear[1] * shear[1]).sqrt(),
             Criterion::MaximumStress => at_least(pull, self.largest_shear(i, shear)),
@@ -159,24 +155,31 @@ impl Hashin {
 
     /// Opens and closes the cracks of lane k.
     fn crack(&self, point: &mut PointBatch, k: usize, now: &Conditions) {
+        let share = solid_share(point, k);
         let mut of = Cracked {
             now,
             strain: symmetric(&point.elastic_strain, k),
-            pressure: point.pressure[k],
+            pressure: point.pressure[k] / share,
         };
         let mut changed = false;
         for i in ORDER {
+            if point.opening[i][k] <= 0.0 {
+                continue;
+            }
             let normal = of.stress()[i];
-            if normal < 0.0 && point.opening[i][k] > 0.0 {
+            if normal < 0.0 {
                 let stretch = at_most(point.opening[i][k], -normal / now.stiffness.stretch[i][i]);
                 point.opening[i][k] -= stretch;
                 of.open(i, -stretch);
                 changed = true;
             }
         }
-        let size = now.size(point, k);
+        let mut stress = of.stress();
         for i in ORDER {
-            changed |= self.part(&mut of, point, k, i, size);
+            if self.part(&mut of, point, k, i, &stress) {
+                stress = of.stress();
+                changed = true;
+            }
         }
         if !changed {
             return;
@@ -184,28 +187,33 @@ impl Hashin {
         for c in 0..6 {
             point.elastic_strain[c][k] = of.strain[c];
         }
-        point.pressure[k] = of.pressure;
-        bear(point, k, &frame(point, k), &of.stress());
-        let [a, b, c] = [0, 1, 2].map(|i| point.crack_damage[i][k]);
-        point.damage[k] = at_least(point.damage[k], at_most(a, at_most(b, c)));
+        let share = solid_share(point, k);
+        point.pressure[k] = of.pressure * share;
+        let mut stress = of.stress();
+        for component in &mut stress {
+            *component *= share;
+        }
+        bear(point, k, &frame(point, k), &stress);
+        let d = &point.crack_damage;
+        let least = at_most(d[0][k], at_most(d[1][k], d[2][k]));
+        point.damage[k] = at_least(point.damage[k], least);
     }
 
-    /// Advances the crack across direction i in a particle of a size (m); true if it has grown or opened.
+    /// Advances the crack across direction i under a stress (Pa); true if it has grown or opened.
     fn part(
         &self,
         of: &mut Cracked,
         point: &mut PointBatch,
         k: usize,
         i: usize,
-        size: f64,
+        stress: &[f64; 6],
     ) -> bool {
-        let stress = of.stress();
         let normal = at_least(stress[i], 0.0);
         if i == 0 && normal == 0.0 {
             return false;
         }
         let left = 1.0 - point.crack_damage[i][k];
-        let progress = self.progress(i, normal, &stress);
+        let progress = self.progress(i, normal, stress);
         if progress <= left {
             return false;
         }
@@ -215,7 +223,7 @@ impl Hashin {
         for c in SHEARS[i] {
             twice += stress[c] * stress[c] / stiffness.shear[c - 3];
         }
-        let all = 2.0 * [self.gf1, self.gf2, self.gf3][i] / size;
+        let all = 2.0 * [self.gf1, self.gf2, self.gf3][i] / of.now.size(point, k);
         // (1 − d)² after the step, where the tractions end on the strengths that are left.
         let square = progress * progress;
         let kept_square = if all > 0.0 && twice / all < square {
@@ -239,7 +247,8 @@ impl Hashin {
             point.opening[i][k] += stretch;
         }
         point.crack_damage[i][k] = 1.0 - strength;
-        point.failure_energy[k] += 0.5 * (1.0 - kept * kept) * twice / point.density[k];
+        let volume = solid_share(point, k) / point.density[k];
+        point.failure_energy[k] += 0.5 * (1.0 - kept * kept) * twice * volume;
         true
     }
 

@@ -96,6 +96,12 @@ pub trait Law: Listed {
         0.0
     }
 
+    /// The modulus (Pa) that beside a reference bulk modulus (Pa) makes the stiffest wave, `K + 4G/3`.
+    #[inline(always)]
+    fn shear_modulus_beside(&self, _bulk_modulus: f64) -> f64 {
+        self.shear_modulus()
+    }
+
     /// Yield stress of the reference state (Pa); infinite for what does not yield.
     fn yield_stress(&self) -> f64 {
         f64::INFINITY
@@ -301,6 +307,16 @@ macro_rules! strength_laws {
                 match self {
                     Self::None => 0.0,
                     $( Self::$law(law) => law.shear_modulus(), )+
+                }
+            }
+
+            /// The modulus (Pa) that beside a reference bulk modulus (Pa) makes the stiffest wave; zero for a fluid.
+            #[inline(always)]
+            #[must_use]
+            pub fn shear_modulus_beside(&self, bulk_modulus: f64) -> f64 {
+                match self {
+                    Self::None => 0.0,
+                    $( Self::$law(law) => law.shear_modulus_beside(bulk_modulus), )+
                 }
             }
 

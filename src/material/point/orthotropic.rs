@@ -1,22 +1,24 @@
 //! Matter with three directions of its own: fibres along 1, layers across 3.
 //!
-//! The stress is that of the elastic strain in the frame of the directions, `C ε`, but for the part of the volume,
-//! which is that of the equation of state:
+//! The stress is that of the elastic strain in the frame of the directions, `C ε`, and the equation of state stands for the
+//! part of its own modulus K in it:
 //!
 //! ```text
-//! σ = C ε + K' tr ε I − p(ρ, e) I,    K' = Σ_ij C_ij/9   (i, j = 1 … 3)
+//! σ = C ε + K tr ε I − p(ρ, e) I,    K = ρ₀ ∂p/∂ρ of the reference state
 //! ```
 //!
-//! so that change of shape has a pressure of its own, `p' = K' tr ε − tr(C ε)/3`, and change of volume a deviator.
-//! Source: Anderson, Cox, Johnson & Maudlin (1994), *A constitutive formulation for anisotropic materials suitable for
-//! wave propagation computer programs II*, Comput. Mech. 15, 201; for composites under impact Clegg, White, Riedel &
-//! Harwick (2006), *Hypervelocity impact damage prediction in composites: Part I*, Int. J. Impact Eng. 33, 190.
+//! so that small strains follow C whatever the equation of state, shocks see its curve, change of shape has a pressure of its own, `K tr ε − tr(C ε)/3`, and
+//! change of volume a deviator. With `K = Σ_ij C_ij/9` (i, j = 1 … 3) this is the split of Anderson, Cox, Johnson & Maudlin
+//! (1994), *A constitutive formulation for anisotropic materials suitable for wave propagation computer programs II*,
+//! Comput. Mech. 15, 201; for composites under impact Clegg, White, Riedel & Harwick (2006), *Hypervelocity impact damage
+//! prediction in composites: Part I*, Int. J. Impact Eng. 33, 190.
 //!
 //! The frame turns with the spin of the matter by the rotation of [`super::jaumann`], and the strain grows by the rate of
 //! deformation in the frame, half of it before the turn and half after. A turn of any size leaves the strain as it is,
 //! and a closed path of strain without turn returns to no stress.
 //!
-//! The equivalent stress of the deviator is at most the yield stress, if there is one: the strain returns along its radius.
+//! Where the pressure is positive, the equivalent stress of the deviator is at most the crush stress, if there is one: the strain
+//! returns along its radius. What is pulled cracks before.
 
 use super::jaumann::{conjugate, rotation};
 use super::{Conditions, Contradiction, FAILED, LANES, Lanes, Law, PointBatch};
@@ -44,8 +46,8 @@ law! {
         g13: "Pa",
         /// Shear modulus of 2 and 3 (Pa).
         g23: "Pa",
-        /// Largest equivalent stress of the deviator (Pa); zero without a limit.
-        yield_stress: "Pa",
+        /// Largest equivalent stress of the deviator of what is pressed (Pa); zero without a limit.
+        crush_stress: "Pa",
     }
 }
 
@@ -56,7 +58,7 @@ pub struct Stiffness {
     pub stretch: [[f64; 3]; 3],
     /// Shear moduli of the planes 12, 13, 23.
     pub shear: [f64; 3],
-    /// `K'`, the modulus of the volume that the equation of state stands for.
+    /// K, that of the volume which the equation of state stands for.
     pub volume: f64,
 }
 
@@ -68,18 +70,18 @@ impl Stiffness {
         volume: 0.0,
     };
 
-    /// Stress `11 22 33 12 13 23` (Pa) of an elastic strain of the same components, without `K' tr ε`, which the equation
+    /// Stress `11 22 33 12 13 23` (Pa) of an elastic strain of the same components, without `K tr ε`, which the equation
     /// of state gives in its place.
     #[inline(always)]
     #[must_use]
     pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
         let [a, b, c, xy, xz, yz] = *strain;
         let volume = self.volume * (a + b + c);
-        let normal = |i: usize| dot(&self.stretch[i], &[a, b, c]) - volume;
+        let stretch = [a, b, c];
         [
-            normal(0),
-            normal(1),
-            normal(2),
+            dot(&self.stretch[0], &stretch) - volume,
+            dot(&self.stretch[1], &stretch) - volume,
+            dot(&self.stretch[2], &stretch) - volume,
             2.0 * self.shear[0] * xy,
             2.0 * self.shear[1] * xz,
             2.0 * self.shear[2] * yz,
@@ -121,47 +123,45 @@ impl Stiffness {
 
 impl Orthotropic {
     /// Compliances `S_ij` of stretches (1/Pa).
+    #[inline(always)]
     fn compliance(&self) -> [[f64; 3]; 3] {
-        let [a, b, c] = [self.e1, self.e2, self.e3].map(|modulus| 1.0 / modulus);
+        let (a, b, c) = (1.0 / self.e1, 1.0 / self.e2, 1.0 / self.e3);
         let (ab, ac, bc) = (-self.nu12 * a, -self.nu13 * a, -self.nu23 * b);
         [[a, ab, ac], [ab, b, bc], [ac, bc, c]]
     }
 
-    /// The moduli: the inverse of the compliances.
+    /// The moduli, the inverse of the compliances, beside an equation of state of a reference bulk modulus (Pa).
     #[inline(always)]
     #[must_use]
-    pub fn stiffness(&self) -> Stiffness {
+    pub fn stiffness(&self, bulk_modulus: f64) -> Stiffness {
         let s = self.compliance();
-        let minor = |i: usize, j: usize| {
-            let ([a, b], [c, d]) = (others(i), others(j));
-            s[a][c] * s[b][d] - s[a][d] * s[b][c]
-        };
-        let cofactors = [
-            [minor(0, 0), -minor(0, 1), minor(0, 2)],
-            [-minor(1, 0), minor(1, 1), -minor(1, 2)],
-            [minor(2, 0), -minor(2, 1), minor(2, 2)],
-        ];
-        let over = 1.0 / dot(&s[0], &cofactors[0]);
-        let stretch = cofactors.map(|row| row.map(|cofactor| cofactor * over));
-        let sum: f64 = stretch.iter().flatten().sum();
+        let mut stretch = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                // Cofactors by cyclic permutation.
+                let ([a, b], [c, d]) = ([(i + 1) % 3, (i + 2) % 3], [(j + 1) % 3, (j + 2) % 3]);
+                stretch[i][j] = s[a][c] * s[b][d] - s[a][d] * s[b][c];
+            }
+        }
+        let over = 1.0 / dot(&s[0], &stretch[0]);
+        for row in &mut stretch {
+            for modulus in row {
+                *modulus *= over;
+            }
+        }
         Stiffness {
             stretch,
             shear: [self.g12, self.g13, self.g23],
-            volume: sum / 9.0,
+            volume: bulk_modulus,
         }
     }
-}
-
-/// The two directions beside one, in ascending order.
-#[inline(always)]
-fn others(i: usize) -> [usize; 2] {
-    [[1, 2], [0, 2], [0, 1]][i]
 }
 
 /// Directions 1, 2, 3 of lane k as the rows of a matrix, row-major; those of x, y, z where none are given.
 #[inline(always)]
 pub(super) fn frame(point: &PointBatch, k: usize) -> [f64; 9] {
-    let [a, c] = [&point.fibre, &point.normal].map(|axis| [axis[0][k], axis[1][k], axis[2][k]]);
+    let (f, n) = (&point.fibre, &point.normal);
+    let (a, c) = ([f[0][k], f[1][k], f[2][k]], [n[0][k], n[1][k], n[2][k]]);
     if a == [0.0; 3] {
         return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     }
@@ -182,15 +182,25 @@ pub(super) fn transposed(a: &[f64; 9]) -> [f64; 9] {
 /// Turns the directions of lane k by a rotation `q`, row-major, and keeps them orthonormal.
 #[inline(always)]
 fn turn(point: &mut PointBatch, k: usize, from: &[f64; 9], q: &[f64; 9]) {
-    let turned = |first: usize| {
-        let axis = [from[first], from[first + 1], from[first + 2]];
-        [0, 3, 6].map(|row| dot(&[q[row], q[row + 1], q[row + 2]], &axis))
-    };
-    let (a, c) = (turned(0), turned(6));
-    let a = a.map(|component| component / dot(&a, &a).sqrt());
+    let rows = [[q[0], q[1], q[2]], [q[3], q[4], q[5]], [q[6], q[7], q[8]]];
+    let (first, third) = ([from[0], from[1], from[2]], [from[6], from[7], from[8]]);
+    let (mut a, mut c) = ([0.0; 3], [0.0; 3]);
+    for i in 0..3 {
+        a[i] = dot(&rows[i], &first);
+        c[i] = dot(&rows[i], &third);
+    }
+    let over = 1.0 / dot(&a, &a).sqrt();
+    for component in &mut a {
+        *component *= over;
+    }
     let along = dot(&a, &c);
-    let c = [0, 1, 2].map(|i| c[i] - along * a[i]);
-    let c = c.map(|component| component / dot(&c, &c).sqrt());
+    for i in 0..3 {
+        c[i] -= along * a[i];
+    }
+    let over = 1.0 / dot(&c, &c).sqrt();
+    for component in &mut c {
+        *component *= over;
+    }
     for i in 0..3 {
         point.fibre[i][k] = a[i];
         point.normal[i][k] = c[i];
@@ -203,8 +213,18 @@ pub(super) fn symmetric(of: &[Lanes; 6], k: usize) -> [f64; 6] {
     [of[0][k], of[1][k], of[2][k], of[3][k], of[4][k], of[5][k]]
 }
 
-/// Sets deviator and pressure of lane k to a stress in its `frame` (Pa), which has the pressure of the equation of state
-/// still to come.
+/// Share of the volume of lane k that matter has, the rest being open cracks.
+#[inline(always)]
+pub(crate) fn solid_share(point: &PointBatch, k: usize) -> f64 {
+    let open = point.opening[0][k] + point.opening[1][k] + point.opening[2][k];
+    if open > 0.0 && point.damage[k] < FAILED {
+        libm::exp(-open)
+    } else {
+        1.0
+    }
+}
+
+/// Sets the deviator of lane k to that of a stress in its `frame` (Pa).
 #[inline(always)]
 pub(super) fn bear(point: &mut PointBatch, k: usize, frame: &[f64; 9], stress: &[f64; 6]) {
     let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
@@ -250,15 +270,24 @@ impl Law for Orthotropic {
         })
     }
 
-    /// That of an isotropic matter with the stiffest wave and the volume of this.
+    /// That beside the modulus of volume of the directions, `Σ C_ij/9`.
     fn shear_modulus(&self) -> f64 {
-        let stiffness = self.stiffness();
-        0.75 * (stiffness.wave_modulus() - stiffness.volume)
+        let stiffness = self.stiffness(0.0);
+        let volume = stiffness.stretch.iter().flatten().sum::<f64>() / 9.0;
+        0.75 * (stiffness.wave_modulus() - volume)
+    }
+
+    #[inline(always)]
+    fn shear_modulus_beside(&self, bulk_modulus: f64) -> f64 {
+        at_least(
+            0.75 * (self.stiffness(bulk_modulus).wave_modulus() - bulk_modulus),
+            0.0,
+        )
     }
 
     fn yield_stress(&self) -> f64 {
-        if self.yield_stress > 0.0 {
-            self.yield_stress
+        if self.crush_stress > 0.0 {
+            self.crush_stress
         } else {
             f64::INFINITY
         }
@@ -266,7 +295,7 @@ impl Law for Orthotropic {
 
     #[inline(always)]
     fn soften(&self, _point: &PointBatch, now: &mut Conditions) {
-        now.stiffness = self.stiffness();
+        now.stiffness = self.stiffness(now.bulk_modulus);
     }
 
     #[inline(never)]
@@ -277,38 +306,46 @@ impl Law for Orthotropic {
                 strain(point, k, dt);
             }
             let strain = symmetric(&point.elastic_strain, k);
-            let stress = now.stiffness.stress(&strain);
+            let share = solid_share(point, k);
+            let mut stress = now.stiffness.stress(&strain);
+            for component in &mut stress {
+                *component *= share;
+            }
             if dt != 0.0 {
                 bear(point, k, &frame(point, k), &stress);
             }
             point.pressure[k] -= (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+            now.shear_modulus[k] *= share;
         }
     }
 
     #[inline(always)]
     fn flow(&self, point: &mut PointBatch, now: &Conditions) {
-        if now.dt == 0.0 || self.yield_stress == 0.0 {
+        if now.dt == 0.0 || self.crush_stress == 0.0 {
             return;
         }
-        self.yields(point, now);
+        self.crush(point, now);
     }
 }
 
 impl Orthotropic {
-    /// Returns strain and stress to the yield stress.
+    /// Returns strain and stress of what is pressed to the crush stress.
     #[inline(never)]
-    fn yields(&self, point: &mut PointBatch, now: &Conditions) {
+    fn crush(&self, point: &mut PointBatch, now: &Conditions) {
         for k in 0..LANES {
+            if point.pressure[k] <= 0.0 {
+                continue;
+            }
             let strain = symmetric(&point.elastic_strain, k);
             let stress = now.stiffness.stress(&strain);
             let square = equivalent_squared(&stress);
-            if square <= self.yield_stress * self.yield_stress || point.damage[k] >= FAILED {
+            if square <= self.crush_stress * self.crush_stress || point.damage[k] >= FAILED {
                 continue;
             }
-            let kept = self.yield_stress / square.sqrt();
+            let kept = self.crush_stress / square.sqrt();
             let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
-            point.pressure[k] += mean * (1.0 - kept);
-            // The work of the stress that stays on the strain that goes, over the yield stress.
+            point.pressure[k] += solid_share(point, k) * mean * (1.0 - kept);
+            // The work of the stress that stays on the strain that goes, over the crush stress.
             let mut work = 0.0;
             for c in 0..6 {
                 let twice = if c < 3 { 1.0 } else { 2.0 };
@@ -317,7 +354,7 @@ impl Orthotropic {
                 point.elastic_strain[c][k] *= kept;
                 point.deviatoric_stress[c][k] *= kept;
             }
-            point.plastic_strain[k] += work / self.yield_stress;
+            point.plastic_strain[k] += work / self.crush_stress;
         }
     }
 }

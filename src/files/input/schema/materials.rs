@@ -209,8 +209,8 @@ macro_rules! strength_laws {
                 g13: Placed<Pressure>, Positive;
                 /// Shear modulus of 2 and 3.
                 g23: Placed<Pressure>, Positive;
-                /// Largest equivalent stress of the deviator.
-                yield_stress: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Largest equivalent stress of the deviator of what is pressed.
+                crush_stress: Placed<Pressure> = "0", NotNegative => "no limit";
             }
             /// `strength.von_mises`: elastic–plastic.
             von_mises: VonMisesParams => VonMises {

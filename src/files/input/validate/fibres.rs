@@ -5,7 +5,7 @@ use toml::Spanned;
 use super::shapes::{axis_vector, vector};
 use crate::input::schema::{AxisParams, BodyParams, FibresParams};
 use crate::input::source::Diagnostic;
-use model::{Body, Case, FibrePattern, Fibres, SymmetryPlane, Vec3};
+use model::{Body, Case, FibrePattern, Fibres, Layup, SymmetryPlane, Vec3};
 
 /// Cosine of the angle within which two directions are one, or a sine within which they are across.
 const CLOSE: f64 = 1e-9;
@@ -62,6 +62,7 @@ const DEFAULT: Fibres = Fibres {
     normal: Vec3::new(0.0, 0.0, 1.0),
     centre: Vec3::new(0.0, 0.0, 0.0),
     angle: 0.0,
+    layup: None,
 };
 
 /// What is elastic along directions begins without stress.
@@ -97,7 +98,8 @@ fn fibres(table: &Spanned<FibresParams>, dimension: usize) -> Result<Fibres, Dia
             return Err(Diagnostic::new(given.span(), title));
         }
     }
-    if let Some(centre) = params.centre.as_ref().filter(|_| straight) {
+    let layup = layup(params)?;
+    if let Some(centre) = (params.centre.as_ref()).filter(|_| straight && layup.is_none()) {
         let title = "directions that are the same everywhere have no `centre`";
         return Err(Diagnostic::new(centre.span(), title));
     }
@@ -128,25 +130,60 @@ fn fibres(table: &Spanned<FibresParams>, dimension: usize) -> Result<Fibres, Dia
         normal,
         centre: vector("centre", params.centre.as_ref(), dimension)?.into(),
         angle: params.angle()?,
+        layup,
     })
+}
+
+/// The layers of a table.
+fn layup(params: &FibresParams) -> Result<Option<Layup>, Diagnostic> {
+    let (angles, ply) = match (&params.layup, params.ply()?) {
+        (None, None) => return Ok(None),
+        (Some(angles), Some(ply)) => (angles, ply),
+        (Some(layup), None) => {
+            let title = "the layers of a `layup` have a thickness, `ply`";
+            return Err(Diagnostic::new(layup.span(), title));
+        }
+        (None, Some(_)) => {
+            let at = params.ply.as_ref().map_or(0..0, Spanned::span);
+            let title = "`ply` is the thickness of the layers of a `layup`, which is missing";
+            return Err(Diagnostic::new(at, title));
+        }
+    };
+    let values: Vec<f64> = angles
+        .get_ref()
+        .iter()
+        .map(|angle| angle.get_ref().si)
+        .collect();
+    if values.is_empty() {
+        return Err(Diagnostic::new(
+            angles.span(),
+            "a `layup` has a layer at least",
+        ));
+    }
+    Ok(Some(Layup {
+        ply,
+        angles: values,
+    }))
 }
 
 /// True if a plane mirrors directions into themselves.
 fn keeps(fibres: &Fibres, plane: &SymmetryPlane) -> bool {
     let a = plane.axis as usize;
     let is_across = |direction: Vec3| 1.0 - direction[a].abs() < CLOSE;
-    let [first, third] = fibres.at(&(fibres.centre + fibres.along));
+    // Helices have a sense.
+    let is_square = |angle: f64| libm::sin(2.0 * angle).abs() < CLOSE;
+    let [axis, first] = [fibres.normal, fibres.along];
     if fibres.pattern == FibrePattern::Straight {
-        return [first, third, third.cross(&first)]
-            .into_iter()
-            .any(is_across);
+        let second = axis.cross(&first);
+        let turned = |angle: f64| {
+            let (s, c) = (libm::sin(angle), libm::cos(angle));
+            is_across(first * c + second * s) || is_across(second * c - first * s)
+        };
+        return is_across(axis) || fibres.angles().all(turned);
     }
-    let axis = fibres.normal;
     let lies_in = axis[a].abs() < CLOSE && {
         let off = fibres.centre[a] - plane.position;
         off.abs() <= CLOSE * fibres.centre.norm().max(plane.position.abs())
     };
-    // Helices have a sense.
-    let unturned = libm::sin(2.0 * fibres.angle).abs() < CLOSE;
-    (lies_in || is_across(axis)) && unturned
+    (lies_in || is_across(axis)) && fibres.angles().all(is_square)
 }
