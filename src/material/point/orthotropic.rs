@@ -254,6 +254,7 @@ impl Law for Orthotropic {
         "deviatoric_stress",
         "plastic_strain",
         "fibre",
+        "normal",
         "elastic_strain",
     ];
     const FOLLOWS_STATE: bool = true;
