@@ -121,10 +121,18 @@ macro_rules! point_fields {
             normal: Vector, Memory;
             /// Elastic strain in the frame of the directions, `11 22 33 12 13 23`.
             elastic_strain: Symmetric, Memory;
-            /// Strain of open cracks across the directions.
-            opening: Vector, Memory;
-            /// Damage of cracks across the directions.
-            crack_damage: Vector, Memory;
+            /// Strain of open cracks across direction 1.
+            opening_1: Scalar, Memory;
+            /// Strain of open cracks across direction 2.
+            opening_2: Scalar, Memory;
+            /// Strain of open cracks across direction 3.
+            opening_3: Scalar, Memory;
+            /// Damage of fibres, by cracks across direction 1.
+            fibre_damage: Scalar, Memory;
+            /// Damage of the matrix, by cracks across direction 2.
+            matrix_damage: Scalar, Memory;
+            /// Damage between layers, by cracks across direction 3.
+            delamination: Scalar, Memory;
             /// Identity.
             id: Id, Known;
             /// Mass (kg).

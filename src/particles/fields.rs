@@ -147,11 +147,19 @@ particle_fields! {
     /// Direction 3 of matter with directions of its own, across its layers; zero in other matter.
     normal: Vector,                       "",       State,    -,              OnDemand, DIRECTIONS;
     /// Elastic strain of such matter in the frame of its directions, 11 22 33 12 13 23.
-    elastic_strain: Symmetric as Same,    "",       State,    -,              OnDemand, DIRECTIONS;
-    /// Strain of open cracks across the directions of such matter.
-    opening: Vector as Same,              "",       State,    -,              OnDemand, CRACKS;
-    /// Damage of cracks across the directions 1, 2, 3: of fibres, between them, between layers.
-    crack_damage: Vector as Same,         "",       State,    -,              IfHeld,   CRACKS;
+    elastic_strain: Symmetric as Same,    "",       State,    -,              Never,    DIRECTIONS;
+    /// Strain of open cracks across direction 1 of such matter.
+    opening_1: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
+    /// Strain of open cracks across its direction 2.
+    opening_2: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
+    /// Strain of open cracks across its direction 3.
+    opening_3: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
+    /// Damage of fibres, by cracks across direction 1.
+    fibre_damage: Scalar,                 "",       State,    -,              IfHeld,   CRACKS;
+    /// Damage of the matrix, by cracks across direction 2.
+    matrix_damage: Scalar,                "",       State,    -,              IfHeld,   CRACKS;
+    /// Damage between layers, by cracks across direction 3.
+    delamination: Scalar,                 "",       State,    -,              IfHeld,   CRACKS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;
     /// Largest pressure so far, compression positive; zero under tension alone.

@@ -145,17 +145,17 @@ fn equal_directions_are_isotropic() {
         form: LinearForm::Logarithmic,
     });
     let same = material(RHO, eos, Strength::Elastic(Elastic { shear_modulus: g }));
-    let l = Matrix3::new(1.0, 2.0, -3.0, 0.5, -4.0, 1.0, 2.0, 0.0, 3.0) * 1e3;
+    let l = Matrix3::new(1.0, 2.0, -3.0, 0.5, -4.0, 1.0, 2.0, 0.0, 3.0);
     let mut points = [
         turned(&Rotation3::from_euler_angles(0.4, 0.2, -0.3)),
         batch(RHO, 0.0),
     ];
     for _ in 0..20 {
-        step(&of(law), &mut points[0], &l, 1e-7);
-        step(&same, &mut points[1], &l, 1e-7);
+        step(&of(law), &mut points[0], &l, 1e-9);
+        step(&same, &mut points[1], &l, 1e-9);
     }
     let [directed, isotropic] = [&points[0], &points[1]].map(whole);
-    // Half of the strain before the turn and half after, of the strain or of the stress.
+    // Lines turn otherwise than the spin, by the strain itself.
     let error = (directed - isotropic).norm() / isotropic.norm();
     assert!(error < 1e-6, "{error:e}");
     assert!((points[0].sound_speed[0] / points[1].sound_speed[0] - 1.0).abs() < 1e-12);
@@ -267,6 +267,16 @@ const STRENGTHS: Hashin = Hashin {
     criterion: Criterion::Hashin,
 };
 
+/// Damage of fibres, of the matrix, between layers.
+fn damages(points: &PointBatch) -> [f64; 3] {
+    [
+        points.fibre_damage,
+        points.matrix_damage,
+        points.delamination,
+    ]
+    .map(|lanes| lanes[0])
+}
+
 fn particle() -> PointBatch {
     PointBatch {
         mass: [RHO * SIZE * SIZE * SIZE; LANES],
@@ -312,7 +322,7 @@ fn a_crack_takes_its_energy_whatever_the_size() {
         assert!((released - 1.0).abs() < 0.05, "{i}: {released}");
         // Beside it, what is held across by the strain that is kept there.
         assert!((work * SIZE / energy - 1.0).abs() < 0.08, "{i}: {work:e}");
-        assert_eq!(points.crack_damage[i][0], 1.0);
+        assert_eq!(damages(&points)[i], 1.0);
         // Fibres break at a stretch at which what is held across begins to split.
         assert!(i == 0 || points.damage[0] == 0.0);
         if i == 2 {
@@ -336,11 +346,14 @@ fn a_crack_closes_before_it_bears_pressure() {
     pull(&lamina, &mut points, &rate, 5000);
     let work = pull(&lamina, &mut points, &-rate, 4900);
     assert!(work.abs() < 1.0, "{work}");
-    assert!(points.opening[2][0] > 0.0);
+    assert!(points.opening_3[0] > 0.0);
     pull(&lamina, &mut points, &-rate, 400);
-    assert_eq!(points.opening[2][0], 0.0);
+    assert_eq!(points.opening_3[0], 0.0);
     let pressed = whole(&points)[(2, 2)];
-    let wanted = -LAMINA.stiffness(BULK).stretch[2][2] * 300e-5;
+    let wanted = LAMINA
+        .stiffness(BULK)
+        .stress(&[0.0, 0.0, -3e-3, 0.0, 0.0, 0.0])[2]
+        - BULK * 3e-3;
     assert!(
         (pressed / wanted - 1.0).abs() < 0.02,
         "{pressed:e} {wanted:e}"
@@ -371,8 +384,8 @@ fn tension_and_shear_go_together() {
             let sum = (stress[(2, 2)] / 50e6).powi(2) + (stress[(1, 2)] / 40e6).powi(2);
             most = most.max(sum);
         }
-        assert!((most / both - 1.0).abs() < 2e-3, "{most}");
-        assert!(points.crack_damage[2][0] > 0.0 && points.crack_damage[0][0] == 0.0);
+        assert!((most / both - 1.0).abs() < 5e-3, "{most}");
+        assert!(damages(&points)[2] > 0.0 && damages(&points)[0] == 0.0);
     }
 }
 
@@ -387,4 +400,65 @@ fn cracks_across_all_directions_are_failure() {
     assert!(whole(&points).norm() == 0.0, "{}", whole(&points));
     pull(&lamina, &mut points, &-rate, 3200);
     assert!(points.pressure[0] > 0.0 && equivalent(&points) == 0.0);
+}
+
+/// Strain that ends where it began, with cracks, crushing and turns on the way, takes work and never gives any.
+#[test]
+fn no_closed_path_gives_energy() {
+    let strong = Orthotropic {
+        crush_stress: 1.2e9,
+        ..LAMINA
+    };
+    let mut lamina = of(strong);
+    lamina.failure.hashin = Some(STRENGTHS);
+    let mut seed = 1_u64;
+    let mut random = || {
+        seed = seed
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(seed >> 33).unwrap()) / f64::from(1_u32 << 31) * 2.0 - 1.0
+    };
+    for (path, size) in [1e-4, 1e-4, 1e-3, 1e-3, 1e-3, 3e-3, 3e-3, 3e-3]
+        .into_iter()
+        .enumerate()
+    {
+        let mut points = particle();
+        let (mut work, mut least) = (0.0, 0.0_f64);
+        // To places of strain, and from each back to none.
+        for _ in 0..8 {
+            let mut rate = Matrix3::from_fn(|_, _| random() * size);
+            rate = (rate + rate.transpose()) * 0.5;
+            for there in [1.0, -1.0] {
+                work += pull(&lamina, &mut points, &(rate * there), 100);
+                least = least.min(work);
+            }
+        }
+        assert!(
+            work > 0.0 && least > -1e-3 * work,
+            "{path}: {work:e} {least:e}"
+        );
+    }
+}
+
+/// Layers that slide over each other keep the directions of their fibres; fibres that are sheared across turn with the lines of
+/// the matter.
+#[test]
+fn fibres_are_lines_of_the_matter() {
+    let lamina = of(LAMINA);
+    let run = |l: Matrix3<f64>| {
+        let mut points = turned(&Rotation3::identity());
+        for _ in 0..100 {
+            step(&lamina, &mut points, &l, 0.01);
+        }
+        [points.fibre, points.normal].map(|axis| Vector3::from(axis.map(|c| c[0])))
+    };
+    let mut slides = Matrix3::zeros();
+    slides[(0, 2)] = 1.5;
+    assert_eq!(run(slides), [Vector3::x(), Vector3::z()]);
+    let [fibre, normal] = run(slides.transpose());
+    let (turned, across) = (
+        Vector3::new(1.0, 0.0, 1.5).normalize(),
+        Vector3::new(-1.5, 0.0, 1.0).normalize(),
+    );
+    assert!((fibre - turned).norm() < 1e-12 && (normal - across).norm() < 1e-12);
 }

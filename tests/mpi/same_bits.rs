@@ -292,7 +292,9 @@ fn failure_on_any_ranks_and_through_restarts() {
             "laminate",
             laminate,
             layers,
-            fields("\"crack_damage\", \"opening\", \"elastic_strain\", \"fibre\", \"normal\""),
+            fields(
+                "\"fibre_damage\", \"matrix_damage\", \"delamination\", \"opening_3\", \"fibre\", \"normal\"",
+            ),
         ),
         (
             "tension",
@@ -698,8 +700,8 @@ fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
         "aluminium-6061-steinberg-guinan",
         "rubber",
         "iron-tillotson",
-        "air",
         "carbon-epoxy",
+        "air",
     ];
     for (n, name) in (0_u32..).zip(materials) {
         let x = 0.6 * f64::from(n);

@@ -32,7 +32,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
         (Owner::BULKING, case.fails_with("bulking_pressure")),
         (Owner::YIELD, case.may_yield()),
         (Owner::DIRECTIONS, case.has_directions()),
-        (Owner::CRACKS, case.fails_with("crack_damage")),
+        (Owner::CRACKS, case.fails_with("delamination")),
         (Owner::CARRIERS, case.measure.marks_particles()),
         (Owner::WITNESSES, !case.measure.witnesses.is_empty()),
         (Owner::CONVENTIONAL, sph.form == SphForm::Conventional),

@@ -23,12 +23,13 @@
 //! and not in that of the matter: with `φ = exp(−Σ o_i)` the stress is φ times that of the matter, at the density ρ/φ. Shear over an open or closed crack that has
 //! taken all of `G_i` is zero: there is no friction.
 //!
-//! Matter with cracks across all three directions has failed.
+//! Matter with cracks across all three directions has failed, and so has what they have opened to spray.
 
 use serde::Deserialize;
 
+use super::damage::SPRAY;
 use super::orthotropic::{bear, frame, solid_share, symmetric};
-use super::{Conditions, FAILED, LANES, Law, PointBatch};
+use super::{Conditions, FAILED, LANES, Lanes, Law, PointBatch};
 use crate::{at_least, at_most};
 
 /// How strengths against tension and shear go together.
@@ -118,6 +119,26 @@ impl Cracked<'_> {
     }
 }
 
+/// Strains of open cracks across direction i.
+#[inline(always)]
+fn opening(point: &mut PointBatch, i: usize) -> &mut Lanes {
+    match i {
+        0 => &mut point.opening_1,
+        1 => &mut point.opening_2,
+        _ => &mut point.opening_3,
+    }
+}
+
+/// Damage by cracks across direction i.
+#[inline(always)]
+fn crack(point: &mut PointBatch, i: usize) -> &mut Lanes {
+    match i {
+        0 => &mut point.fibre_damage,
+        1 => &mut point.matrix_damage,
+        _ => &mut point.delamination,
+    }
+}
+
 /// A stress over its strength, which is without limit if that is zero.
 #[inline(always)]
 fn over(stress: f64, strength: f64) -> f64 {
@@ -154,7 +175,7 @@ impl Hashin {
     }
 
     /// Opens and closes the cracks of lane k.
-    fn crack(&self, point: &mut PointBatch, k: usize, now: &Conditions) {
+    fn advance(&self, point: &mut PointBatch, k: usize, now: &Conditions) {
         let share = solid_share(point, k);
         let mut of = Cracked {
             now,
@@ -163,13 +184,13 @@ impl Hashin {
         };
         let mut changed = false;
         for i in ORDER {
-            if point.opening[i][k] <= 0.0 {
+            if opening(point, i)[k] <= 0.0 {
                 continue;
             }
             let normal = of.stress()[i];
             if normal < 0.0 {
-                let stretch = at_most(point.opening[i][k], -normal / now.stiffness.stretch[i][i]);
-                point.opening[i][k] -= stretch;
+                let stretch = at_most(opening(point, i)[k], -normal / now.stiffness.stretch[i][i]);
+                opening(point, i)[k] -= stretch;
                 of.open(i, -stretch);
                 changed = true;
             }
@@ -194,8 +215,10 @@ impl Hashin {
             *component *= share;
         }
         bear(point, k, &frame(point, k), &stress);
-        let d = &point.crack_damage;
-        let least = at_most(d[0][k], at_most(d[1][k], d[2][k]));
+        let least = at_most(
+            point.fibre_damage[k],
+            at_most(point.matrix_damage[k], point.delamination[k]),
+        );
         point.damage[k] = at_least(point.damage[k], least);
     }
 
@@ -212,7 +235,7 @@ impl Hashin {
         if i == 0 && normal == 0.0 {
             return false;
         }
-        let left = 1.0 - point.crack_damage[i][k];
+        let left = 1.0 - crack(point, i)[k];
         let progress = self.progress(i, normal, stress);
         if progress <= left {
             return false;
@@ -242,11 +265,8 @@ impl Hashin {
         for c in SHEARS[i] {
             of.strain[c] *= kept;
         }
-        // Spray at its least density opens no farther.
-        if point.density[k] > super::damage::SPRAY * of.now.reference_density {
-            point.opening[i][k] += stretch;
-        }
-        point.crack_damage[i][k] = 1.0 - strength;
+        opening(point, i)[k] += stretch;
+        crack(point, i)[k] = 1.0 - strength;
         let volume = solid_share(point, k) / point.density[k];
         point.failure_energy[k] += 0.5 * (1.0 - kept * kept) * twice * volume;
         true
@@ -255,9 +275,12 @@ impl Hashin {
     /// Opens and closes all cracks.
     #[inline(never)]
     fn damage(&self, point: &mut PointBatch, now: &Conditions) {
+        let spray = SPRAY * now.reference_density;
         for k in 0..LANES {
-            if point.damage[k] < FAILED {
-                self.crack(point, k, now);
+            if point.density[k] <= spray {
+                point.damage[k] = FAILED;
+            } else if point.damage[k] < FAILED {
+                self.advance(point, k, now);
             }
         }
     }
@@ -269,8 +292,12 @@ impl Law for Hashin {
         "damage",
         "failure_energy",
         "elastic_strain",
-        "opening",
-        "crack_damage",
+        "opening_1",
+        "opening_2",
+        "opening_3",
+        "fibre_damage",
+        "matrix_damage",
+        "delamination",
     ];
     const FOLLOWS_STATE: bool = true;
     const HAS_ONSET: bool = false;

@@ -76,7 +76,7 @@ fn advance_point(l: &[f64; 9], s: &[f64; 6], g_dt: f64, dt: f64) -> [f64; 6] {
 /// `(I − A)⁻¹ (I + A) = I + 2 (A + A²)/(1 + |a|²)` for the skew matrix A of upper components
 /// `xy xz yz` and their square sum `|a|²`, row-major.
 #[inline(always)]
-pub(super) fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
+fn rotation(xy: f64, xz: f64, yz: f64) -> [f64; 9] {
     let (xy2, xz2, yz2) = (xy * xy, xz * xz, yz * yz);
     let f = 2.0 / (1.0 + (xy2 + xz2 + yz2));
     [

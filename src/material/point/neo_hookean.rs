@@ -102,7 +102,7 @@ fn determinant(a: &[f64; 6]) -> f64 {
 
 /// `(I − c L)⁻¹ (I + c L) = 2 (I − c L)⁻¹ − I`, row-major.
 #[inline(always)]
-fn increment(l: &[f64; 9], c: f64) -> [f64; 9] {
+pub(super) fn increment(l: &[f64; 9], c: f64) -> [f64; 9] {
     let m = |i: usize| f64::from(u8::from(i.is_multiple_of(4))) - c * l[i];
     let [xx, xy, xz, yx, yy, yz, zx, zy, zz] =
         [m(0), m(1), m(2), m(3), m(4), m(5), m(6), m(7), m(8)];

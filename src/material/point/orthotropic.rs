@@ -1,26 +1,29 @@
 //! Matter with three directions of its own: fibres along 1, layers across 3.
 //!
-//! The stress is that of the elastic strain in the frame of the directions, `C ε`, and the equation of state stands for the
-//! part of its own modulus K in it:
+//! The elastic strain ε in the frame of the directions has the energy of C, and the equation of state stands for the part of its
+//! own modulus K in it:
 //!
 //! ```text
-//! σ = C ε + K tr ε I − p(ρ, e) I,    K = ρ₀ ∂p/∂ρ of the reference state
+//! W = ½ ε̃ C ε̃ − ½ K g²,    ε̃ = dev ε + g I/3,    σ = ∂W/∂ε − p(ρ, e) I,    K = ρ₀ ∂p/∂ρ of the reference state
 //! ```
 //!
-//! so that small strains follow C whatever the equation of state, shocks see its curve, change of shape has a pressure of its own, `K tr ε − tr(C ε)/3`, and
-//! change of volume a deviator. With `K = Σ_ij C_ij/9` (i, j = 1 … 3) this is the split of Anderson, Cox, Johnson & Maudlin
-//! (1994), *A constitutive formulation for anisotropic materials suitable for wave propagation computer programs II*,
-//! Comput. Mech. 15, 201; for composites under impact Clegg, White, Riedel & Harwick (2006), *Hypervelocity impact damage
-//! prediction in composites: Part I*, Int. J. Impact Eng. 33, 190.
+//! with `g = tr ε` in tension and `tr ε/(1 − tr ε/ε₀)` in compression, `ε₀ = .1`. So small strains follow C whatever the equation of state,
+//! change of shape has a pressure and change of volume a deviator; and of strong compression the equation of state alone tells the pressure, for
+//! shock data of a laminate have another modulus than C. Nothing but energy is stored: no closed path gives any. With `g = tr ε`
+//! and `K = Σ_ij C_ij/9` (i, j = 1 … 3) this is the split of Anderson, Cox, Johnson & Maudlin (1994), *A constitutive
+//! formulation for anisotropic materials suitable for wave propagation computer programs II*, Comput. Mech. 15, 201; for
+//! composites under impact Clegg, White, Riedel & Harwick (2006), *Hypervelocity impact damage prediction in composites:
+//! Part I*, Int. J. Impact Eng. 33, 190.
 //!
-//! The frame turns with the spin of the matter by the rotation of [`super::jaumann`], and the strain grows by the rate of
-//! deformation in the frame, half of it before the turn and half after. A turn of any size leaves the strain as it is,
-//! and a closed path of strain without turn returns to no stress.
+//! Fibres and layers are lines and planes of the matter: direction 1 is carried along by the deformation, direction 3 is what is
+//! across the plane of 1 and 2. The strain grows by the rate of deformation in the frame, half of it before the frame turns and
+//! half after. A turn of any size leaves it as it is.
 //!
-//! Where the pressure is positive, the equivalent stress of the deviator is at most the crush stress, if there is one: the strain
-//! returns along its radius. What is pulled cracks before.
+//! Where the pressure is positive, the equivalent stress of the deviator is at most the crush stress, if there is one: the deviator
+//! returns along its radius by a flow without change of volume. What is pulled cracks before.
 
-use super::jaumann::{conjugate, rotation};
+use super::jaumann::conjugate;
+use super::neo_hookean::increment;
 use super::{Conditions, Contradiction, FAILED, LANES, Lanes, Law, PointBatch};
 use crate::at_least;
 use numerics::vector::dot;
@@ -51,6 +54,9 @@ law! {
     }
 }
 
+/// Compression at which half of the volume counts for what is elastic.
+const DENSE: f64 = 0.1;
+
 /// Elastic moduli in the frame of the directions (Pa).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stiffness {
@@ -70,21 +76,58 @@ impl Stiffness {
         volume: 0.0,
     };
 
-    /// Stress `11 22 33 12 13 23` (Pa) of an elastic strain of the same components, without `K tr ε`, which the equation
-    /// of state gives in its place.
+    /// Stress `11 22 33 12 13 23` (Pa) of an elastic strain of the same components, beside the pressure of the equation of
+    /// state.
     #[inline(always)]
     #[must_use]
     pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
         let [a, b, c, xy, xz, yz] = *strain;
-        let volume = self.volume * (a + b + c);
-        let stretch = [a, b, c];
-        [
-            dot(&self.stretch[0], &stretch) - volume,
-            dot(&self.stretch[1], &stretch) - volume,
-            dot(&self.stretch[2], &stretch) - volume,
+        let volume = a + b + c;
+        // The volume that counts, and its derivative.
+        let (mut counts, mut slope) = (volume, 1.0);
+        if volume < 0.0 {
+            let share = 1.0 / (1.0 - volume / DENSE);
+            (counts, slope) = (volume * share, share * share);
+        }
+        let less = (counts - volume) * (1.0 / 3.0);
+        let stretch = [a + less, b + less, c + less];
+        let mut stress = [
+            dot(&self.stretch[0], &stretch),
+            dot(&self.stretch[1], &stretch),
+            dot(&self.stretch[2], &stretch),
             2.0 * self.shear[0] * xy,
             2.0 * self.shear[1] * xz,
             2.0 * self.shear[2] * yz,
+        ];
+        let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
+        let left = (mean - self.volume * counts) * slope - mean;
+        for normal in &mut stress[..3] {
+            *normal += left;
+        }
+        stress
+    }
+
+    /// The strain without change of volume by which an elastic strain must fall for its deviator (Pa) to be gone.
+    #[inline(always)]
+    fn shape(&self, compliance: &[[f64; 3]; 3], deviator: &[f64; 6]) -> [f64; 6] {
+        let [a, b, c, xy, xz, yz] = *deviator;
+        let (mut strain, mut pressed) = ([0.0; 3], [0.0; 3]);
+        let (mut volume, mut softness) = (0.0, 0.0);
+        for i in 0..3 {
+            strain[i] = dot(&compliance[i], &[a, b, c]);
+            pressed[i] = dot(&compliance[i], &[1.0; 3]);
+            volume += strain[i];
+            softness += pressed[i];
+        }
+        let pressure = volume / softness;
+        let [g12, g13, g23] = self.shear;
+        [
+            strain[0] - pressure * pressed[0],
+            strain[1] - pressure * pressed[1],
+            strain[2] - pressure * pressed[2],
+            0.5 * xy / g12,
+            0.5 * xz / g13,
+            0.5 * yz / g23,
         ]
     }
 
@@ -165,11 +208,7 @@ pub(super) fn frame(point: &PointBatch, k: usize) -> [f64; 9] {
     if a == [0.0; 3] {
         return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     }
-    let b = [
-        c[1] * a[2] - c[2] * a[1],
-        c[2] * a[0] - c[0] * a[2],
-        c[0] * a[1] - c[1] * a[0],
-    ];
+    let b = cross(&c, &a);
     [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]]
 }
 
@@ -179,32 +218,37 @@ pub(super) fn transposed(a: &[f64; 9]) -> [f64; 9] {
     [a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]]
 }
 
-/// Turns the directions of lane k by a rotation `q`, row-major, and keeps them orthonormal.
+/// Carries the directions of lane k along with a deformation `f`, row-major, and keeps them orthonormal.
 #[inline(always)]
-fn turn(point: &mut PointBatch, k: usize, from: &[f64; 9], q: &[f64; 9]) {
-    let rows = [[q[0], q[1], q[2]], [q[3], q[4], q[5]], [q[6], q[7], q[8]]];
-    let (first, third) = ([from[0], from[1], from[2]], [from[6], from[7], from[8]]);
-    let (mut a, mut c) = ([0.0; 3], [0.0; 3]);
+fn carry(point: &mut PointBatch, k: usize, from: &[f64; 9], f: &[f64; 9]) {
+    let rows = [[f[0], f[1], f[2]], [f[3], f[4], f[5]], [f[6], f[7], f[8]]];
+    let (first, second) = ([from[0], from[1], from[2]], [from[3], from[4], from[5]]);
+    let (mut a, mut b) = ([0.0; 3], [0.0; 3]);
     for i in 0..3 {
         a[i] = dot(&rows[i], &first);
-        c[i] = dot(&rows[i], &third);
+        b[i] = dot(&rows[i], &second);
     }
-    let over = 1.0 / dot(&a, &a).sqrt();
-    for component in &mut a {
-        *component *= over;
-    }
-    let along = dot(&a, &c);
+    let mut c = cross(&a, &b);
+    let (along, across) = (1.0 / dot(&a, &a).sqrt(), 1.0 / dot(&c, &c).sqrt());
     for i in 0..3 {
-        c[i] -= along * a[i];
+        a[i] *= along;
+        c[i] *= across;
     }
-    let over = 1.0 / dot(&c, &c).sqrt();
-    for component in &mut c {
-        *component *= over;
-    }
+    let off = dot(&a, &c);
     for i in 0..3 {
         point.fibre[i][k] = a[i];
-        point.normal[i][k] = c[i];
+        point.normal[i][k] = c[i] - off * a[i];
     }
+}
+
+/// `a × b`.
+#[inline(always)]
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// One lane of a symmetric tensor.
@@ -216,7 +260,7 @@ pub(super) fn symmetric(of: &[Lanes; 6], k: usize) -> [f64; 6] {
 /// Share of the volume of lane k that matter has, the rest being open cracks.
 #[inline(always)]
 pub(crate) fn solid_share(point: &PointBatch, k: usize) -> f64 {
-    let open = point.opening[0][k] + point.opening[1][k] + point.opening[2][k];
+    let open = point.opening_1[k] + point.opening_2[k] + point.opening_3[k];
     if open > 0.0 && point.damage[k] < FAILED {
         libm::exp(-open)
     } else {
@@ -345,16 +389,23 @@ impl Orthotropic {
             }
             let kept = self.crush_stress / square.sqrt();
             let mean = (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
-            point.pressure[k] += solid_share(point, k) * mean * (1.0 - kept);
-            // The work of the stress that stays on the strain that goes, over the crush stress.
+            let mut deviator = stress;
+            for normal in &mut deviator[..3] {
+                *normal -= mean;
+            }
+            let flow = now.stiffness.shape(&self.compliance(), &deviator);
+            // The work of the stress that stays, over the crush stress.
             let mut work = 0.0;
             for c in 0..6 {
+                let increment = (1.0 - kept) * flow[c];
                 let twice = if c < 3 { 1.0 } else { 2.0 };
-                let deviator = if c < 3 { stress[c] - mean } else { stress[c] };
-                work += twice * kept * deviator * (1.0 - kept) * strain[c];
-                point.elastic_strain[c][k] *= kept;
+                work += twice * kept * deviator[c] * increment;
+                point.elastic_strain[c][k] -= increment;
                 point.deviatoric_stress[c][k] *= kept;
             }
+            let left = now.stiffness.stress(&symmetric(&point.elastic_strain, k));
+            let rest = (left[0] + left[1] + left[2]) * (1.0 / 3.0);
+            point.pressure[k] += solid_share(point, k) * (mean - rest);
             point.plastic_strain[k] += work / self.crush_stress;
         }
     }
@@ -378,14 +429,12 @@ fn strain(point: &mut PointBatch, k: usize, dt: f64) {
         0.5 * half * (l(2) + l(6)),
         0.5 * half * (l(5) + l(7)),
     ];
-    let quarter = 0.25 * dt;
-    let q = rotation(
-        quarter * (l(1) - l(3)),
-        quarter * (l(2) - l(6)),
-        quarter * (l(5) - l(7)),
-    );
     let before = frame(point, k);
-    turn(point, k, &before, &q);
+    let mut gradient = [0.0; 9];
+    for (c, component) in gradient.iter_mut().enumerate() {
+        *component = point.velocity_gradient[c][k];
+    }
+    carry(point, k, &before, &increment(&gradient, half));
     let first = conjugate(&before, &rate);
     let second = conjugate(&frame(point, k), &rate);
     if point.damage[k] >= FAILED {
