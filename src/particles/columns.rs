@@ -119,7 +119,7 @@ bitflags! {
 }
 
 /// Bit of the first pair term in a set of options.
-const FIRST_TERM: usize = 32;
+const FIRST_TERM: usize = 40;
 
 macro_rules! owners {
     ($( $(#[$doc:meta])+ $term:ident { $key:ident: $($more:tt)+ } )+) => {
@@ -194,6 +194,8 @@ macro_rules! owners {
                 const SELF_GRAVITY = 1 << 30;
                 /// Materials that bulk as they break.
                 const BULKING = 1 << 31;
+                /// Rigid bodies that forces move.
+                const FREE_RIGID = 1 << 32;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

@@ -28,6 +28,7 @@ pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) ->
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        pivot: None,
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

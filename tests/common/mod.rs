@@ -32,6 +32,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         velocity,
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        pivot: None,
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

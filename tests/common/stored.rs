@@ -30,6 +30,7 @@ pub fn case() -> Case {
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        pivot: None,
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

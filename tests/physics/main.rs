@@ -39,6 +39,7 @@ mod options;
 mod penalty;
 mod porous;
 mod quarter;
+mod rigid_bodies;
 mod rings;
 mod self_contact;
 mod spall;

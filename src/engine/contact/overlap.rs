@@ -88,7 +88,7 @@ impl Constants for Overlap {
 
 /// Stiffness of the core of two bodies (Pa): `max(M, .85 ρ v²)` with v (m/s) the largest
 /// speed against each other that the case states. M and ρ are harmonic means of moduli and
-/// densities, as the mass of two particles that meet head-on is; what is rigid counts as infinite.
+/// densities, as the mass of two particles that meet head-on is; what is driven counts as infinite.
 fn core_scale(case: &Case, bodies: [usize; 2]) -> f64 {
     let modulus = harmonic_mean(case, bodies, |body| case.contact_modulus(body));
     modulus.max(impact_stiffness(case, bodies))
@@ -105,10 +105,10 @@ fn meeting_density(case: &Case, bodies: [usize; 2]) -> f64 {
     harmonic_mean(case, bodies, |body| case.initial_density(body))
 }
 
-/// That of a value of two bodies; what is rigid counts as infinite.
+/// That of a value of two bodies; what is driven counts as infinite.
 fn harmonic_mean(case: &Case, [a, b]: [usize; 2], value: impl Fn(&Body) -> f64) -> f64 {
     let bodies = [&case.bodies[a], &case.bodies[b]];
-    let soft = bodies.into_iter().filter(|body| body.rigid.is_none());
+    let soft = bodies.into_iter().filter(|body| body.driven().is_none());
     2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
 }
 

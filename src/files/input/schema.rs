@@ -171,8 +171,12 @@ tables! {
         form: Option<Spanned<BodyForm>> = BodyForm::Auto;
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
-        /// True if the body is rigid and keeps its velocity, whatever acts on it.
+        /// True if the body is rigid: it keeps its velocity, whatever acts on it, unless it is `free`.
         rigid: Option<bool> = false;
+        /// True if forces move the rigid body.
+        free: Option<Spanned<bool>> = false;
+        /// Point that stays where it is, and about which a free rigid body turns.
+        pivot: Option<Spanned<Vec<Placed<Length>>>> => "none";
         /// Motion of a rigid body.
         motion: Option<Spanned<MotionParams>> => "its `velocity` for ever";
     }

@@ -46,7 +46,7 @@ fn goes(motion: &Motion, plane: &SymmetryPlane) -> bool {
 fn bodies(case: &Case, params: &CaseParams, plane: &SymmetryPlane) -> Result<(), Diagnostic> {
     let cut = |body: &Body| is_cut(body, case.dimension, plane);
     for (body, table) in case.bodies.iter().zip(&params.body) {
-        let moves = match &body.rigid {
+        let moves = match body.driven() {
             Some(motion) => goes(motion, plane),
             None => flows(case, body, plane),
         };

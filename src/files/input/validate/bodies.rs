@@ -10,7 +10,7 @@ use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
 use super::particles::{self, Files};
-use super::shapes::Shapes;
+use super::shapes::{Shapes, vector};
 use super::touch;
 use crate::input::names;
 use crate::input::schema::{AngularVelocityParams, BodyParams, CaseParams, ShapeParams};
@@ -89,7 +89,7 @@ impl Reader<'_> {
             }
             bodies.push(body);
         }
-        if bodies.iter().all(|body| body.rigid.is_some()) {
+        if bodies.iter().all(|body| body.driven().is_some()) {
             return Err(Diagnostic::new(params[0].span(), "every body is rigid"));
         }
         self.check_size(params, &bodies)?;
@@ -125,6 +125,7 @@ impl Reader<'_> {
             velocity,
             angular_velocity: self.angular_velocity(params)?,
             rigid,
+            pivot: self.pivot(params)?,
             density,
             initial: initial::initial(params, varied, self.dimension)?,
         };
@@ -212,14 +213,14 @@ impl Reader<'_> {
         Ok((shape, lattice))
     }
 
-    /// Index of the material; one beyond the last for a rigid body that names none.
+    /// Index of the material; one beyond the last for a driven body that names none.
     fn material(
         &self,
         params: &BodyParams,
         table: &Spanned<BodyParams>,
     ) -> Result<usize, Diagnostic> {
         let Some(name) = &params.material else {
-            if params.rigid == Some(true) {
+            if params.rigid == Some(true) && !params.is_free() {
                 return Ok(self.materials.len());
             }
             let title = "the key `material` is missing";
@@ -245,6 +246,17 @@ impl Reader<'_> {
             let title = "a rigid body has one velocity: its `velocity` cannot vary";
             return Err(Diagnostic::new(given.span(), title));
         }
+        if let Some(free) = params.free.as_ref().filter(|free| *free.get_ref()) {
+            if let Some(table) = &params.motion {
+                let title = "forces move a free rigid body: it has no `motion`";
+                return Err(Diagnostic::new(table.span(), title));
+            }
+            if !rigid {
+                let title = "only a rigid body is `free`: forces move all others anyway";
+                return Err(Diagnostic::new(free.span(), title));
+            }
+            return Ok((velocity, Some(Motion::default()), None));
+        }
         let Some(table) = &params.motion else {
             let motion = rigid.then(|| Motion::constant(velocity.into()));
             return Ok((velocity, motion, varied));
@@ -266,14 +278,48 @@ impl Reader<'_> {
         Ok((start.into(), Some(motion), None))
     }
 
+    /// The point about which a free rigid body turns, if there is one.
+    fn pivot(&self, params: &BodyParams) -> Result<Option<Vec3>, Diagnostic> {
+        let Some(given) = &params.pivot else {
+            return Ok(None);
+        };
+        let refuse = |title: &str, span| Err(Diagnostic::new(span, title));
+        if !params.is_free() {
+            return refuse("only a free rigid body has a `pivot`", given.span());
+        }
+        if self.dimension == 1 {
+            return refuse(
+                "in one dimension nothing turns about a `pivot`",
+                given.span(),
+            );
+        }
+        if !self.case.symmetry.is_empty() {
+            let title = "a body with a `pivot` would turn through the symmetry planes of the case";
+            return refuse(title, given.span());
+        }
+        let speed = params.speed.as_ref().map(Spanned::span);
+        if let Some(span) = params.velocity.as_ref().map(Spanned::span).or(speed) {
+            return refuse(
+                "a body with a `pivot` has an `angular_velocity` alone",
+                span,
+            );
+        }
+        if let Some(turn) = &params.angular_velocity
+            && matches!(turn.get_ref(), AngularVelocityParams::About(_))
+        {
+            return refuse("a body with a `pivot` turns about that", turn.span());
+        }
+        Ok(Some(vector("pivot", Some(given), self.dimension)?.into()))
+    }
+
     /// The initial angular velocity: about x, y and z, or in two dimensions about z.
     fn angular_velocity(&self, params: &BodyParams) -> Result<Vec3, Diagnostic> {
         let Some(given) = &params.angular_velocity else {
             return Ok(Vec3::zeros());
         };
-        if params.rigid == Some(true) {
+        if params.rigid == Some(true) && !params.is_free() {
             let title = "a rigid body does not turn: it has no `angular_velocity`";
-            return Err(Diagnostic::new(given.span(), title));
+            return Err(Diagnostic::new(given.span(), title).help("a `free` one does"));
         }
         let (rates, span) = match given.get_ref() {
             AngularVelocityParams::Own(rates) => (rates, given.span()),
@@ -353,6 +399,14 @@ impl Reader<'_> {
         let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
         let is_cut = populate::bounds(body, self.dimension)
             .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
+        if !is_cut && body.is_free() {
+            let title = format!(
+                "the symmetry plane of {} does not cut the free rigid body `{}`, which could pass through it",
+                axis.name(),
+                body.name
+            );
+            return Err(warn(title).help("model the whole without the plane"));
+        }
         let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
         if is_cut && turns_across {
             let title = format!(
