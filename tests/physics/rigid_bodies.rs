@@ -160,7 +160,7 @@ fn what_slides_ends_rolling() {
     for (dimension, shape, gravity, velocity, share) in [
         (
             2,
-            "disc = { radius = \"20 mm\" }",
+            "sphere = { radius = \"20 mm\" }",
             "[0, \"-10 m/s^2\"]",
             "[\"0.5 m/s\", 0]",
             2.0 / 3.0,
