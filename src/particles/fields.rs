@@ -192,7 +192,7 @@ particle_fields! {
     part_planes: Index,                   "",       State,    MOTION,            Never,    SELF_CONTACT;
     /// Position at the start.
     reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL | FREE_RIGID;
-    /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
+    /// Which loads and rigid bodies move it: a set of bits, in the input's order.
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
     absorption: Scalar,                   "1/s",    State,    -,              OnDemand, ABSORBERS;

@@ -34,6 +34,7 @@ const INPUTS: &[&str] = &[
     "punch",
     "quarter-impact",
     "raindrop",
+    "ricochet",
     "rod-into-concrete",
     "rubber-rings",
     "sedov",

@@ -134,7 +134,7 @@ impl RigidState {
     }
 
     /// What contact and gravity (m/s²) give in a time (s).
-    fn kick(&mut self, freedom: &Freedom, gravity: &[f64; 3], time: f64) {
+    fn kick(&mut self, freedom: Freedom, gravity: &[f64; 3], time: f64) {
         let fall = cross(&self.lever_now(), &gravity.map(|g| self.mass * g));
         for a in 0..3 {
             if freedom.moves[a] {
@@ -424,20 +424,50 @@ impl Loads {
 
     /// First half kick of rigid bodies in a step `dt` (s), and their drift. Their particles have not moved yet.
     pub(crate) fn advance_free(&mut self, states: &mut [RigidState], dt: f64) {
-        let gravity = self.gravity;
-        for (moving, state) in self.free.bodies.iter_mut().zip(states) {
-            let before = moving
-                .is_held
-                .then(|| (state.momenta(), state.load(&gravity)));
+        self.move_free(states, 0.5 * dt, |moving, state, kick| {
             moving.place = state.place;
-            state.kick(&moving.freedom, &gravity, 0.5 * dt);
+            kick(state);
             moving.middle = state.twist();
             state.drift(dt);
-            let books = (
-                &mut self.sums[moving.by as usize],
+        });
+    }
+
+    /// Second half kick of rigid bodies in a step `dt` (s).
+    pub(crate) fn kick_free(&mut self, states: &mut [RigidState], dt: f64) {
+        self.move_free(states, 0.5 * dt, |moving, state, kick| {
+            moving.middle = state.twist();
+            kick(state);
+            moving.end = state.twist();
+        });
+    }
+
+    /// Lets rigid bodies `go` through a half kick of half a step (s), and books what holds them.
+    fn move_free(
+        &mut self,
+        states: &mut [RigidState],
+        half: f64,
+        go: impl Fn(&mut Moving, &mut RigidState, &dyn Fn(&mut RigidState)),
+    ) {
+        let gravity = self.gravity;
+        for (moving, state) in self.free.bodies.iter_mut().zip(states) {
+            let books = moving.is_held && self.keeps_books;
+            let before = books.then(|| (state.momenta(), state.load(&gravity)));
+            let freedom = moving.freedom;
+            go(moving, state, &|state| state.kick(freedom, &gravity, half));
+            let Some((momenta, load)) = before else {
+                continue;
+            };
+            // What the body has gained beyond what it bore.
+            let now = state.momenta();
+            let sums = [
+                &mut self.sums[moving.by as usize][..3],
                 &mut self.angular_impulse,
-            );
-            book(books, state, before.filter(|_| self.keeps_books), 0.5 * dt);
+            ];
+            for (part, sums) in sums.into_iter().enumerate() {
+                for (a, sum) in sums.iter_mut().enumerate() {
+                    sum.add(now[part][a] - momenta[part][a] - half * load[part][a]);
+                }
+            }
         }
     }
 
@@ -456,7 +486,7 @@ impl Loads {
             moving.middle = state.twist();
             let mut predicted = *state;
             // Force and torque of the beginning of the step, as with particles.
-            predicted.kick(&moving.freedom, &self.gravity, 0.5 * dt);
+            predicted.kick(moving.freedom, &self.gravity, 0.5 * dt);
             moving.end = predicted.twist();
         }
         self.free.carry(particles, states);
@@ -497,42 +527,6 @@ impl Loads {
         for (sums, state) in sums.iter().zip(states) {
             let [x, y, z, torque @ ..] = sums.each_ref().map(ExactSum::value);
             (state.force, state.torque) = ([x, y, z], torque);
-        }
-    }
-
-    /// Second half kick of rigid bodies in a step `dt` (s).
-    pub(crate) fn kick_free(&mut self, states: &mut [RigidState], dt: f64) {
-        let gravity = self.gravity;
-        for (moving, state) in self.free.bodies.iter_mut().zip(states) {
-            let before = moving
-                .is_held
-                .then(|| (state.momenta(), state.load(&gravity)));
-            moving.middle = state.twist();
-            state.kick(&moving.freedom, &gravity, 0.5 * dt);
-            moving.end = state.twist();
-            let books = (
-                &mut self.sums[moving.by as usize],
-                &mut self.angular_impulse,
-            );
-            book(books, state, before.filter(|_| self.keeps_books), 0.5 * dt);
-        }
-    }
-}
-
-/// Books what holds a body that had these momenta and bore this load for a time (s): what it has gained beyond that.
-fn book(
-    (sums, angular): (&mut [ExactSum; 4], &mut [ExactSum; 3]),
-    state: &RigidState,
-    before: Option<(Screw, Screw)>,
-    time: f64,
-) {
-    let Some((momenta, load)) = before else {
-        return;
-    };
-    let now = state.momenta();
-    for (part, sums) in [&mut sums[..3], angular].into_iter().enumerate() {
-        for (a, sum) in sums.iter_mut().enumerate() {
-            sum.add(now[part][a] - momenta[part][a] - time * load[part][a]);
         }
     }
 }

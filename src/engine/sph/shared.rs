@@ -63,9 +63,9 @@ impl Sums {
                 .collect(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
             free_sound: (case.bodies.iter())
-                .map(|body| match body.is_free() {
-                    true => case.materials[body.material].longitudinal_speed(),
-                    false => 0.0,
+                .map(|body| {
+                    let material = body.is_free().then(|| &case.materials[body.material]);
+                    material.map_or(0.0, Material::longitudinal_speed)
                 })
                 .collect(),
             needs_particle: case.materials.iter().any(Material::needs_particle),

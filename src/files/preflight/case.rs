@@ -39,7 +39,8 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
         ));
     }
     // Bodies that are driven, fall or meet their mirror images move without an impact.
-    let acting = case.load_names().count() - case.loads.absorbers.len();
+    let free = case.bodies.iter().filter(|body| body.is_free()).count();
+    let acting = case.load_names().count() - case.loads.absorbers.len() - free;
     let driven = acting > 0;
     let straight = (0..case.bodies.len()).all(|body| flies_straight(case, body));
     let towards_mirror = case.symmetry.iter().any(|plane| {

@@ -50,7 +50,8 @@ fn bodies(case: &Case, params: &CaseParams, plane: &SymmetryPlane) -> Result<(),
             Some(motion) => goes(motion, plane),
             None => flows(case, body, plane),
         };
-        if moves && cut(body) {
+        // All planes cut a free rigid body.
+        if moves && (body.is_free() || cut(body)) {
             let motion = table.get_ref().motion.as_ref();
             let at = motion.map_or_else(|| key_span(table, "velocity"), Spanned::span);
             return Err(refused(&format!("`{}`", body.name), plane, at));

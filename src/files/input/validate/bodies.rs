@@ -293,7 +293,7 @@ impl Reader<'_> {
                 given.span(),
             );
         }
-        if !self.case.symmetry.is_empty() {
+        if self.case.symmetry.len() + 1 >= self.dimension {
             let title = "a body with a `pivot` would turn through the symmetry planes of the case";
             return refuse(title, given.span());
         }
@@ -399,7 +399,8 @@ impl Reader<'_> {
         let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
         let is_cut = populate::bounds(body, self.dimension)
             .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
-        if !is_cut && body.is_free() {
+        // One that begins at the plane goes on behind it.
+        if body.is_free() && !is_cut && gap > 1.0 {
             let title = format!(
                 "the symmetry plane of {} does not cut the free rigid body `{}`, which could pass through it",
                 axis.name(),
@@ -408,7 +409,7 @@ impl Reader<'_> {
             return Err(warn(title).help("model the whole without the plane"));
         }
         let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
-        if is_cut && turns_across {
+        if (is_cut || body.is_free()) && turns_across {
             let title = format!(
                 "`{}` is cut by the symmetry plane of {}, so that it can turn only about that axis",
                 body.name,
