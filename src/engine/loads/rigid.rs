@@ -302,6 +302,9 @@ impl FreeBodies {
 
     /// Gives particles the places and velocities of their bodies.
     fn carry(&self, particles: &mut ParticleStore, states: &[RigidState]) {
+        if self.bits == 0 {
+            return;
+        }
         let owned = particles.owned();
         let (start, loads) = (&particles.reference_position, &particles.load);
         // At most so many as a particle has bits.
@@ -478,9 +481,6 @@ impl Loads {
         states: &[RigidState],
         dt: f64,
     ) {
-        if self.free.bits == 0 {
-            return;
-        }
         for (moving, state) in self.free.bodies.iter_mut().zip(states) {
             moving.place = state.place;
             moving.middle = state.twist();
