@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid,
+    Cloud, Freedom, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid,
     SymmetryPlane, Vec3, cube,
 };
 use numerics::extent::Extent;
@@ -119,8 +119,8 @@ pub struct Body {
     pub angular_velocity: Vec3,
     /// The motion of a rigid body; forces move one that has no component of it. Absent for bodies that deform.
     pub rigid: Option<Motion>,
-    /// The point about which a rigid body that forces move can turn alone (m), if any.
-    pub pivot: Option<Vec3>,
+    /// How a rigid body can move, if forces move it.
+    pub freedom: Freedom,
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,

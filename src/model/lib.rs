@@ -16,6 +16,7 @@ pub mod differences;
 mod distance;
 mod formula;
 mod fragments;
+mod freedom;
 mod gauge;
 mod grading;
 mod initial;
@@ -47,6 +48,7 @@ pub use control::{
 };
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};
+pub use freedom::Freedom;
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};

@@ -60,7 +60,7 @@ fn a_misspelled_key_names_the_nearest() {
 13 | materiel = \"metal\"
    | ^^^^^^^^ did you mean `material`?
    |
-   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `pivot`, `motion`";
+   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     assert_eq!(
         message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
         expected
@@ -75,7 +75,7 @@ fn an_override_is_shown_itself() {
 1 | body.ball.velocty=[0, 0, 0]
   |           ^^^^^^^ did you mean `velocity`?
   |
-  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `pivot`, `motion`";
+  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     let set = [
         "run.max_steps=1",
         "body.ball.velocty=[0, 0, 0]",
@@ -925,11 +925,11 @@ fn a_pivot_has_a_spin_alone() {
         ),
         (
             wheel(3, &format!("{pivot}velocity = [\"1 m/s\", 0, 0]")),
-            "a body with a `pivot` has an `angular_velocity` alone",
+            "a body with a `pivot` turns, and does nothing else",
         ),
         (
-            wheel(3, &format!("{pivot}speed = \"1 m/s\"")),
-            "a body with a `pivot` has an `angular_velocity` alone",
+            wheel(3, &format!("{pivot}moves = [\"x\"]")),
+            "a body with a `pivot` turns, and does nothing else",
         ),
         (
             wheel(

@@ -318,3 +318,47 @@ fn half_a_hammer_swings_as_the_whole_does() {
     assert!(norm(&minus(&half, &whole)) < 1e-12, "{half:?} {whole:?}");
     assert!(half[1] > 10.0);
 }
+
+/// A weight that a guide keeps upright falls on the edge of a block: the guide bears the rest, and no work is done on it.
+#[test]
+fn a_guided_weight_falls_straight() {
+    let weight = free(
+        "weight",
+        "cubic",
+        "box = { lower = [\"3 mm\", \"-2 mm\", 0], upper = [\"9 mm\", \"3 mm\", \"4 mm\"] }",
+        "velocity = [0, 0, \"-2 m/s\"]\nmoves = [\"z\"]\nturns = []",
+    );
+    let block = "[[body]]\nname = \"block\"\nmaterial = \"soft\"\nshape.box = \
+                 { lower = [\"-6 mm\", \"-6 mm\", \"-6 mm\"], upper = [\"6 mm\", \"6 mm\", 0] }\n";
+    let mut s = case((3, 1.0), 4.0, true, &format!("{block}{weight}"));
+    run_to(&mut s, 3e-3);
+    assert_momenta(&s);
+    let body = state(&s);
+    assert!(body.velocity[2] > -1.5 && body.velocity[..2] == [0.0; 2]);
+    assert_eq!(
+        (body.spin(), body.place[..2].to_vec()),
+        ([0.0; 3], body.origin[..2].to_vec())
+    );
+    let guide = &s.state.loads[0];
+    assert!(
+        guide.impulse[0].abs() > 1e-9 && guide.work == 0.0,
+        "{guide:?}"
+    );
+    assert!(s.state.worst.energy_error < 1e-2);
+}
+
+/// A brick that turns about one axis alone keeps its rate.
+#[test]
+fn a_brick_on_an_axle_keeps_its_rate() {
+    let brick = free(
+        "brick",
+        "cubic",
+        "box = { lower = [0, 0, 0], upper = [\"3 mm\", \"4 mm\", \"6 mm\"] }",
+        "turns = [\"x\"]\nvelocity = [0, 0, \"1 m/s\"]\nangular_velocity = [\"300 rad/s\", 0, 0]",
+    );
+    let mut s = case((3, 1.0), 4.0, false, &brick);
+    run_to(&mut s, 5e-3);
+    assert_momenta(&s);
+    let spin = state(&s).spin();
+    assert!(norm(&minus(&spin, &[300.0, 0.0, 0.0])) < 1e-9, "{spin:?}");
+}

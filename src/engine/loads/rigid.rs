@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::sums::sum_over;
 use super::{Loads, Prescribed};
 use comm::Comm;
-use model::Case;
+use model::{Case, Freedom};
 use numerics::attitude::{self, rotation, turned};
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use numerics::principal::principal;
@@ -21,8 +21,7 @@ const THIN: f64 = 1e-9;
 
 /// A rigid body that forces move (SI); equal on all ranks.
 ///
-/// Its reference point is the centre of mass, or the pivot, or where symmetry planes meet the lines on which they keep the
-/// centre of mass of the whole.
+/// Its reference point is the pivot, or the centre of mass, behind symmetry planes that of the whole.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RigidState {
@@ -134,7 +133,7 @@ impl RigidState {
     }
 
     /// What contact and gravity (m/s²) give in a time (s).
-    fn kick(&mut self, freedom: Freedom, gravity: &[f64; 3], time: f64) {
+    fn kick(&mut self, freedom: &Freedom, gravity: &[f64; 3], time: f64) {
         let fall = cross(&self.lever_now(), &gravity.map(|g| self.mass * g));
         for a in 0..3 {
             if freedom.moves[a] {
@@ -195,27 +194,6 @@ impl RigidState {
     }
 }
 
-/// Axes along which a body can move, and about which it can turn.
-#[derive(Debug, Clone, Copy)]
-struct Freedom {
-    moves: [bool; 3],
-    turns: [bool; 3],
-}
-
-impl Freedom {
-    /// Of a body of a case, whose symmetry planes all cut it.
-    fn new(case: &Case, body: usize) -> Self {
-        let is_free = case.bodies[body].pivot.is_none();
-        let is_plane = |a: usize| case.symmetry.iter().any(|plane| plane.axis.index() == a);
-        let planes = |a: usize| case.symmetry.iter().all(|plane| plane.axis.index() == a);
-        let spans = |a: usize| case.dimension == 3 || (case.dimension == 2 && a == 2);
-        Self {
-            moves: std::array::from_fn(|a| is_free && a < case.dimension && !is_plane(a)),
-            turns: std::array::from_fn(|a| spans(a) && planes(a)),
-        }
-    }
-}
-
 /// A free body in a step.
 #[derive(Debug)]
 struct Moving {
@@ -223,7 +201,7 @@ struct Moving {
     /// Its ledger.
     by: u8,
     freedom: Freedom,
-    /// True if a pivot or symmetry planes hold it.
+    /// True if something holds it.
     is_held: bool,
     /// Its reference point (m) in the half kick that comes next.
     place: [f64; 3],
@@ -253,14 +231,14 @@ impl FreeBodies {
             .zip(rigid)
             .filter(|(_, body)| case.bodies[**body].is_free())
         {
-            let freedom = Freedom::new(case, body);
+            let freedom = case.freedom_of(&case.bodies[body]);
             free.of_bit[bit] = u8::try_from(free.bodies.len()).unwrap_or(u8::MAX);
             free.bits |= 1 << bit;
             free.bodies.push(Moving {
                 body,
                 by: u8::try_from(bit).unwrap_or(u8::MAX),
                 freedom,
-                is_held: freedom.moves[..case.dimension].contains(&false),
+                is_held: is_held(&freedom, case.dimension),
                 place: [0.0; 3],
                 middle: Twist::default(),
                 end: Twist::default(),
@@ -369,7 +347,7 @@ impl Loads {
             });
             let centre = [x, y, z].map(|sum| sum / total);
             let body = &case.bodies[moving.body];
-            let mut origin = body.pivot.map_or(centre, Into::into);
+            let mut origin = body.freedom.pivot.map_or(centre, Into::into);
             for plane in &case.symmetry {
                 origin[plane.axis.index()] = plane.position;
             }
@@ -456,7 +434,7 @@ impl Loads {
             let books = moving.is_held && self.keeps_books;
             let before = books.then(|| (state.momenta(), state.load(&gravity)));
             let freedom = moving.freedom;
-            go(moving, state, &|state| state.kick(freedom, &gravity, half));
+            go(moving, state, &|state| state.kick(&freedom, &gravity, half));
             let Some((momenta, load)) = before else {
                 continue;
             };
@@ -486,7 +464,7 @@ impl Loads {
             moving.middle = state.twist();
             let mut predicted = *state;
             // Force and torque of the beginning of the step, as with particles.
-            predicted.kick(moving.freedom, &self.gravity, 0.5 * dt);
+            predicted.kick(&moving.freedom, &self.gravity, 0.5 * dt);
             moving.end = predicted.twist();
         }
         self.free.carry(particles, states);
@@ -529,6 +507,16 @@ impl Loads {
             (state.force, state.torque) = ([x, y, z], torque);
         }
     }
+}
+
+/// True if a body is not free to do all that a dimension has.
+fn is_held(freedom: &Freedom, dimension: usize) -> bool {
+    let turns = match dimension {
+        3 => &freedom.turns[..],
+        2 => &freedom.turns[2..],
+        _ => &[],
+    };
+    freedom.moves[..dimension].contains(&false) || turns.contains(&false)
 }
 
 /// Joins sums of all ranks, with memory to do so. Collective.

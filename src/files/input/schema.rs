@@ -175,6 +175,10 @@ tables! {
         rigid: Option<bool> = false;
         /// True if forces move the rigid body.
         free: Option<Spanned<bool>> = false;
+        /// Axes along which a free rigid body moves.
+        moves: Option<Spanned<Vec<Spanned<Axis>>>> => "all";
+        /// Axes about which it turns: one, or none.
+        turns: Option<Spanned<Vec<Spanned<Axis>>>> => "all";
         /// Point that stays where it is, and about which a free rigid body turns.
         pivot: Option<Spanned<Vec<Placed<Length>>>> => "none";
         /// Motion of a rigid body.

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use toml::Spanned;
 
+use super::freedom::freedom;
 use super::grading::{finest, graded, grading};
 use super::initial;
 use super::lattice::lattice;
 use super::motion::motion;
 use super::particles::{self, Files};
-use super::shapes::{Shapes, vector};
+use super::shapes::Shapes;
 use super::touch;
 use crate::input::names;
 use crate::input::schema::{AngularVelocityParams, BodyParams, CaseParams, ShapeParams};
@@ -112,6 +113,7 @@ impl Reader<'_> {
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
         let (velocity, rigid, varied) = self.motion(params)?;
+        let spin = self.angular_velocity(params)?;
         let density = params.density()?;
         let (shape, lattice) = self.form(params, material, table)?;
         let mut body = Body {
@@ -123,9 +125,13 @@ impl Reader<'_> {
             material,
             lattice,
             velocity,
-            angular_velocity: self.angular_velocity(params)?,
+            angular_velocity: spin,
             rigid,
-            pivot: self.pivot(params)?,
+            freedom: freedom(
+                params,
+                [velocity, spin],
+                (self.dimension, self.case.symmetry.len()),
+            )?,
             density,
             initial: initial::initial(params, varied, self.dimension)?,
         };
@@ -276,40 +282,6 @@ impl Reader<'_> {
         }
         let start = std::array::from_fn::<f64, 3, _>(|a| motion.velocity(a, 0.0));
         Ok((start.into(), Some(motion), None))
-    }
-
-    /// The point about which a free rigid body turns, if there is one.
-    fn pivot(&self, params: &BodyParams) -> Result<Option<Vec3>, Diagnostic> {
-        let Some(given) = &params.pivot else {
-            return Ok(None);
-        };
-        let refuse = |title: &str, span| Err(Diagnostic::new(span, title));
-        if !params.is_free() {
-            return refuse("only a free rigid body has a `pivot`", given.span());
-        }
-        if self.dimension == 1 {
-            return refuse(
-                "in one dimension nothing turns about a `pivot`",
-                given.span(),
-            );
-        }
-        if self.case.symmetry.len() + 1 >= self.dimension {
-            let title = "a body with a `pivot` would turn through the symmetry planes of the case";
-            return refuse(title, given.span());
-        }
-        let speed = params.speed.as_ref().map(Spanned::span);
-        if let Some(span) = params.velocity.as_ref().map(Spanned::span).or(speed) {
-            return refuse(
-                "a body with a `pivot` has an `angular_velocity` alone",
-                span,
-            );
-        }
-        if let Some(turn) = &params.angular_velocity
-            && matches!(turn.get_ref(), AngularVelocityParams::About(_))
-        {
-            return refuse("a body with a `pivot` turns about that", turn.span());
-        }
-        Ok(Some(vector("pivot", Some(given), self.dimension)?.into()))
     }
 
     /// The initial angular velocity: about x, y and z, or in two dimensions about z.

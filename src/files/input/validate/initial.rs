@@ -180,7 +180,7 @@ fn fits_material(case: &Case, body: &Body, params: &BodyParams) -> Result<(), Di
 /// A turn about any point is one about the centre, which then has a velocity by it.
 fn turn_about(body: &mut Body, params: &BodyParams, dimension: usize) -> Result<(), Diagnostic> {
     let turn = params.angular_velocity.as_ref().map(Spanned::get_ref);
-    let point = match (body.pivot, turn) {
+    let point = match (body.freedom.pivot, turn) {
         (Some(pivot), _) => pivot,
         (None, Some(AngularVelocityParams::About(table))) => {
             components("about", &table.about, dimension)?;

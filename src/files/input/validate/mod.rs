@@ -12,6 +12,7 @@ mod domain;
 mod eos;
 mod failure;
 mod fragments;
+mod freedom;
 mod grading;
 mod initial;
 mod lattice;
