@@ -176,9 +176,9 @@ impl RigidState {
         self.attitude = turned(&self.attitude, &axis.map(|a| angle * a));
     }
 
-    /// True if all numbers are finite and the body has a mass.
+    /// True if all numbers are finite, the body has a mass and its attitude is a rotation.
     pub(crate) fn is_sound(&self) -> bool {
-        let all = [
+        let vectors = [
             self.lever,
             self.mobility,
             self.origin,
@@ -188,9 +188,12 @@ impl RigidState {
             self.force,
             self.torque,
         ];
-        let axes = self.axes.iter().flatten().chain(&self.inertia);
-        let mut all = all.iter().flatten().chain(axes).chain(&self.attitude);
-        self.mass > 0.0 && self.mass.is_finite() && all.all(|value| value.is_finite())
+        let mut all = (vectors.iter().chain(&self.axes).flatten()).chain(&self.inertia);
+        let length2 = self.attitude.iter().fold(0.0, |sum, q| sum + q * q);
+        self.mass > 0.0
+            && self.mass.is_finite()
+            && (length2 - 1.0).abs() < 1e-9
+            && all.all(|value| value.is_finite())
     }
 }
 
