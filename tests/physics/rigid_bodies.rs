@@ -265,7 +265,7 @@ fn a_pendulum_swings_as_it_should() {
     let [w, .., z] = body.attitude;
     let error = [2.0 * libm::atan2(z, w) - angle, body.spin()[2] / spin - 1.0];
     println!("{angle} {error:?}");
-    assert!(error.iter().all(|error| error.abs() < 2e-4), "{error:?}");
+    assert!(error.iter().all(|error| error.abs() < 1e-5), "{error:?}");
     assert!(body.place == [0.0; 3] && body.velocity == [0.0; 3]);
     assert!(s.state.worst.energy_error < 1e-4);
     assert_momenta(&s);
