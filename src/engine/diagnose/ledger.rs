@@ -324,7 +324,7 @@ pub struct RunState {
     #[serde(default)]
     pub stretch: f64,
     /// Rigid bodies that forces move.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<RigidState>,
     /// Largest values over the run.
     pub worst: Worst,
