@@ -59,6 +59,7 @@ r  | inputs/hertz-cylinder | spacing=0.6mm
    | inputs/noh | run.max_steps=300
    | inputs/punch | run.max_steps=60
 q  | inputs/quarter-impact | spacing=0.05mm
+   | inputs/ricochet | spacing=1mm run.max_steps=120
    | inputs/rubber-rings | spacing=2mm
    | inputs/sliding-block | run.max_steps=30
    | inputs/sod |
@@ -69,6 +70,7 @@ qr | inputs/tension-strip | run.max_steps=120
    | inputs/whipple-shield | spacing=0.4mm body.bumper.spacing.inner=0.4mm run.max_steps=60
 qr | tests/common/loaded.toml | run.max_steps=60
 qr | tests/common/absorbed.toml |
+qr | tests/common/tumbling.toml |
 qr | tests/common/torn.toml |
 q  | tests/common/flight.toml |
 END

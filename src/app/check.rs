@@ -131,7 +131,7 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
     out::write(&plot::preview(case, section, None)?, path)
 }
 
-/// The mass of so many particles of a body (SI); none of a rigid one.
+/// The mass of so many particles of a body (SI); none of a driven one.
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 fn mass_of(case: &Case, body: &Body, count: u64) -> Option<f64> {
     // Bodies with equal particles have been counted.
@@ -139,10 +139,10 @@ fn mass_of(case: &Case, body: &Body, count: u64) -> Option<f64> {
         None => count as f64,
         Some(_) => populate::shares(body, case.dimension, &case.symmetry),
     };
-    (body.rigid.is_none()).then(|| case.particle_mass(body) * shares())
+    (body.driven().is_none()).then(|| case.particle_mass(body) * shares())
 }
 
-/// That mass, and by how much each has more than Δp^d to bear that; nothing of a rigid body.
+/// That mass, and by how much each has more than Δp^d to bear that; nothing of a driven body.
 fn mass(case: &Case, body: &Body, count: u64) -> String {
     let Some(mass) = mass_of(case, body, count) else {
         return String::new();

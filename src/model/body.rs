@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 
 use super::{
-    Cloud, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid,
+    Cloud, Freedom, Grading, Initial, Motion, Place, Placement, Primitive, Quantity, Shape, Solid,
     SymmetryPlane, Vec3, cube,
 };
 use numerics::extent::Extent;
@@ -117,8 +117,10 @@ pub struct Body {
     pub velocity: Vec3,
     /// Initial angular velocity about its centre (rad/s).
     pub angular_velocity: Vec3,
-    /// The motion of a rigid body; its particles feel nothing. Absent for bodies that deform.
+    /// The motion of a rigid body; forces move one that has no component of it. Absent for bodies that deform.
     pub rigid: Option<Motion>,
+    /// How a rigid body can move, if forces move it.
+    pub freedom: Freedom,
     /// Constant smoothing length h₀ (m): the reference of contact, and of the SPH sums unless
     /// they vary it.
     pub smoothing_length: f64,
@@ -166,6 +168,20 @@ impl Body {
     pub fn holds(&self, quantity: Quantity) -> bool {
         let cloud = self.cloud();
         cloud.is_some_and(|(cloud, _)| cloud.all(quantity).is_some())
+    }
+
+    /// `true` for a rigid body that forces move.
+    #[must_use]
+    pub fn is_free(&self) -> bool {
+        let mut axes = 0..3;
+        let motion = self.rigid.as_ref();
+        motion.is_some_and(|motion| !axes.any(|axis| motion.has(axis)))
+    }
+
+    /// The motion that a rigid body keeps, whatever acts on it.
+    #[must_use]
+    pub fn driven(&self) -> Option<&Motion> {
+        self.rigid.as_ref().filter(|_| !self.is_free())
     }
 
     /// Initial velocity (m/s) of a particle at `position` (m).

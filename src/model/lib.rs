@@ -17,6 +17,7 @@ mod distance;
 mod fibres;
 mod formula;
 mod fragments;
+mod freedom;
 mod gauge;
 mod grading;
 mod initial;
@@ -49,6 +50,7 @@ pub use control::{
 pub use fibres::{FibrePattern, Fibres, Layup};
 pub use formula::{Combination, Formula, Function, Operation, Place, Profile};
 pub use fragments::{FragmentOptions, Include};
+pub use freedom::Freedom;
 pub use gauge::{Cadence, Gauge, Witness};
 pub use grading::{Focus, Grading};
 pub use initial::{Heat, Initial};
@@ -241,10 +243,10 @@ impl Case {
         bodies.any(|body| self.materials[body.material].thermal.is_some())
     }
 
-    /// The largest sound speed (m/s) of what deforms; what is rigid has a material that carries nothing.
+    /// The largest sound speed (m/s) of what forces move; what is driven has a material that carries nothing.
     #[must_use]
     pub fn fastest_sound(&self) -> f64 {
-        let bodies = self.bodies.iter().filter(|body| body.rigid.is_none());
+        let bodies = self.bodies.iter().filter(|body| body.driven().is_none());
         let speeds = bodies.map(|body| self.materials[body.material].longitudinal_speed());
         speeds.fold(0.0, f64::max)
     }
@@ -269,10 +271,10 @@ impl Case {
     /// True if some bodies may meet so fast that their speed stiffens their contact, see [`Self::impact_stiffness`].
     #[must_use]
     pub fn meets_fast(&self) -> bool {
-        let soft = || self.bodies.iter().filter(|body| body.rigid.is_none());
+        let soft = || self.bodies.iter().filter(|body| body.driven().is_none());
         let modulus = soft().map(|body| self.contact_modulus(body));
         let density = soft().map(|body| self.initial_density(body));
-        // A harmonic mean is as large as its smaller value, and with what is rigid twice the other one, at most.
+        // A harmonic mean is as large as its smaller value, and with what is driven twice the other one, at most.
         let softest = modulus.fold(f64::INFINITY, f64::min) * (1.0 - 1e-9);
         let densest = 2.0 * density.fold(0.0, f64::max);
         Self::impact_stiffness(densest, self.impact_speed()) > softest

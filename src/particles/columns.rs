@@ -119,7 +119,7 @@ bitflags! {
 }
 
 /// Bit of the first pair term in a set of options.
-const FIRST_TERM: usize = 34;
+const FIRST_TERM: usize = 40;
 
 macro_rules! owners {
     ($( $(#[$doc:meta])+ $term:ident { $key:ident: $($more:tt)+ } )+) => {
@@ -198,6 +198,8 @@ macro_rules! owners {
                 const DIRECTIONS = 1 << 32;
                 /// Materials that crack across their directions.
                 const CRACKS = 1 << 33;
+                /// Rigid bodies that forces move.
+                const FREE_RIGID = 1 << 34;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

@@ -209,8 +209,8 @@ particle_fields! {
     /// Symmetry planes that the part reaches across: a set of bits.
     part_planes: Index,                   "",       State,    MOTION,            Never,    SELF_CONTACT;
     /// Position at the start.
-    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL;
-    /// Which loads and rigid bodies prescribe its velocity: a set of bits, in the input's order.
+    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL | FREE_RIGID;
+    /// Which loads and rigid bodies move it: a set of bits, in the input's order.
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
     absorption: Scalar,                   "1/s",    State,    -,              OnDemand, ABSORBERS;

@@ -50,7 +50,9 @@ pub fn close_pairs(case: &Case) -> Vec<[usize; 2]> {
         .map(|pair| pair.map(|place| indices[place]));
     let sees = |&[a, b]: &[usize; 2]| {
         !matches!(case.contact_between(a, b), ContactMode::None)
-            && [a, b].iter().any(|&body| case.bodies[body].rigid.is_none())
+            && [a, b]
+                .iter()
+                .any(|&body| case.bodies[body].driven().is_none())
     };
     pairs.filter(sees).collect()
 }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 
 use super::*;
-use model::{Initial, Lattice, LatticeKind, Shape, Vec3};
+use model::{Freedom, Initial, Lattice, LatticeKind, Shape, Vec3};
 
 mod bricks;
 mod counts;
@@ -28,6 +28,7 @@ pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) ->
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

@@ -10,7 +10,7 @@ pub mod virtual_ranks;
 
 use material::{Elastic, Eos, Linear, LinearForm, Strength, VonMises, library};
 use model::{
-    Axis, Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads,
+    Axis, Body, Case, ContactMode, DomainOptions, Freedom, Initial, Lattice, LatticeKind, Loads,
     MeasureOptions, OutputOptions, Overlap, RunControl, Shape, SymmetryPlane, TimeStepOptions,
     Vec3,
 };
@@ -32,6 +32,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         velocity,
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

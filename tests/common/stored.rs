@@ -3,8 +3,8 @@
 use comm::Comm;
 use files::output::snapshot;
 use model::{
-    Body, Case, ContactMode, DomainOptions, Initial, Lattice, LatticeKind, Loads, MeasureOptions,
-    OutputOptions, RunControl, Shape, SymmetryPlane, TimeStepOptions, Vec3,
+    Body, Case, ContactMode, DomainOptions, Freedom, Initial, Lattice, LatticeKind, Loads,
+    MeasureOptions, OutputOptions, RunControl, Shape, SymmetryPlane, TimeStepOptions, Vec3,
 };
 use particles::{FIELDS, ParticleStore};
 
@@ -30,6 +30,7 @@ pub fn case() -> Case {
         velocity: Vec3::zeros(),
         angular_velocity: Vec3::zeros(),
         rigid: None,
+        freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
         filled: None,

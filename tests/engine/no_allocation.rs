@@ -135,6 +135,13 @@ fn check_all() {
     // The pool of threads is there before anything is counted.
     rayon::join(|| (), || ());
     check(&comm, CASE, &[]);
+    let free = CASE
+        .replace(
+            "rigid = true",
+            "rigid = true\nfree = true\nmaterial = \"aluminium\"",
+        )
+        .replace("length = \"1.6 mm\"", "length = \"4 mm\"");
+    check(&comm, &free, &[]);
     let options = [
         "artificial_stress=0.3",
         "balsara=true",

@@ -60,7 +60,7 @@ fn a_misspelled_key_names_the_nearest() {
 13 | materiel = \"metal\"
    | ^^^^^^^^ did you mean `material`?
    |
-   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `motion`";
+   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     assert_eq!(
         message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
         expected
@@ -75,7 +75,7 @@ fn an_override_is_shown_itself() {
 1 | body.ball.velocty=[0, 0, 0]
   |           ^^^^^^^ did you mean `velocity`?
   |
-  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `motion`";
+  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     let set = [
         "run.max_steps=1",
         "body.ball.velocty=[0, 0, 0]",
@@ -891,6 +891,63 @@ fn what_a_plane_cuts_does_not_move_across_it() {
         load("above = { x = \"3 mm\" }\nvelocity = { x = \"1 m/s\" }"),
         table("normal = \"-z\"\nmotion = { z = \"-1 m/s\" }"),
         roll("rotation = { axis = \"x\", rate = \"1 rad/s\" }"),
+    ] {
+        parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+/// A pivot is of a free rigid body that can turn about it, and has no other velocity.
+#[test]
+fn a_pivot_has_a_spin_alone() {
+    let wheel = |dimension: usize, more: &str| {
+        let sides = vec!["\"8 mm\""; dimension].join(", ");
+        format!(
+            "dimension = {dimension}\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+             material.metal.library = \"copper\"\n[[body]]\nname = \"wheel\"\nrigid = true\nfree = true\n\
+             material = \"metal\"\nshape.box.size = [{sides}]\n{more}\n"
+        )
+    };
+    let symmetry = |axis: &str| format!("[[symmetry]]\naxis = \"{axis}\"\n");
+    let pivot = "pivot = [0, 0, \"9 mm\"]\n";
+    let planes = format!("{pivot}{}", symmetry("x"));
+    for (text, said) in [
+        (
+            wheel(1, "pivot = [0]"),
+            "in one dimension nothing turns about a `pivot`",
+        ),
+        (
+            wheel(2, &format!("pivot = [0, 0]\n{}", symmetry("x"))),
+            "a body with a `pivot` would turn through the symmetry planes of the case",
+        ),
+        (
+            wheel(3, &format!("{planes}{}", symmetry("y"))),
+            "a body with a `pivot` would turn through the symmetry planes of the case",
+        ),
+        (
+            wheel(3, &format!("{pivot}velocity = [\"1 m/s\", 0, 0]")),
+            "a body with a `pivot` turns, and does nothing else",
+        ),
+        (
+            wheel(3, &format!("{pivot}moves = [\"x\"]")),
+            "a body with a `pivot` turns, and does nothing else",
+        ),
+        (
+            wheel(
+                3,
+                &format!("{pivot}angular_velocity = {{ rate = [0, 0, 0], about = [0, 0, 0] }}"),
+            ),
+            "a body with a `pivot` turns about that",
+        ),
+    ] {
+        let message = message(&text, &[]);
+        assert!(
+            message.starts_with(&format!("error: {said}\n")),
+            "{message}"
+        );
+    }
+    for text in [
+        wheel(2, "pivot = [0, 0]\nangular_velocity = [\"1 rad/s\"]"),
+        wheel(3, &planes),
     ] {
         parse("case.toml", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
     }

@@ -404,6 +404,38 @@ fn a_gentle_start_on_any_ranks_and_through_restarts() {
     }
 }
 
+/// Rigid bodies that forces move, which share particles among ranks: a ball, a brick and a bar on a pivot; and a sphere that
+/// two symmetry planes cut.
+#[test]
+fn free_rigid_bodies_on_any_ranks_and_through_restarts() {
+    let (_keep, at) = folder();
+    let case = ["tests/common/tumbling.toml"];
+    let one = same_anywhere(
+        &case,
+        ["0.35us", "0.58us"],
+        |name| at(&format!("free-{name}")),
+        "what tumbles",
+    );
+    let table = std::fs::read_to_string(one.join("rigid.csv")).expect("the table");
+    for name in ["ball", "brick", "bar"] {
+        assert!(table.contains(&format!(",{name},")), "{name}: {table}");
+    }
+    let mut case = QUARTER.to_vec();
+    for set in [
+        "body.sphere.rigid=true",
+        "body.sphere.free=true",
+        "run.end_time=0.1us",
+    ] {
+        case.extend(["--set", set]);
+    }
+    same_anywhere(
+        &case,
+        ["0.02us", "0.07us"],
+        |name| at(&format!("quarter-{name}")),
+        "a quarter of a sphere",
+    );
+}
+
 /// Gauges that are fixed, on a plane of symmetry, in the void, carried; planes that the sphere and the
 /// plate pass; measures of a plate, its debris, regions, a front and a bar: every table on any ranks and through restarts between their rows.
 #[test]

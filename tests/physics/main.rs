@@ -40,6 +40,7 @@ mod orthotropic;
 mod penalty;
 mod porous;
 mod quarter;
+mod rigid_bodies;
 mod rings;
 mod self_contact;
 mod spall;

@@ -35,6 +35,7 @@ const INPUTS: &[&str] = &[
     "punch",
     "quarter-impact",
     "raindrop",
+    "ricochet",
     "rod-into-concrete",
     "rubber-rings",
     "sedov",

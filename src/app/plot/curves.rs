@@ -78,7 +78,7 @@ const DISTRIBUTIONS: &str = "distributions.csv";
 const HISTORY: &str = "history.csv";
 
 /// The tables of a run in which columns are looked for, in this order.
-const TABLES: [&str; 11] = [
+const TABLES: [&str; 12] = [
     HISTORY,
     "bodies.csv",
     CONTACTS,
@@ -87,6 +87,7 @@ const TABLES: [&str; 11] = [
     "witness.csv",
     "fragments.csv",
     "loads.csv",
+    "rigid.csv",
     "performance.csv",
     "removed.csv",
     "departed.csv",

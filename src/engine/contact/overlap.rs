@@ -88,11 +88,11 @@ impl Constants for Overlap {
     }
 }
 
-/// Harmonic mean of a value of two bodies, as the mass of two particles that meet head-on is; what is rigid counts as
+/// Harmonic mean of a value of two bodies, as the mass of two particles that meet head-on is; what is driven counts as
 /// infinite.
 fn harmonic_mean(of: &Between, value: impl Fn(&Body) -> f64) -> f64 {
     let bodies = of.indices.map(|index| &of.case.bodies[index]);
-    let soft = bodies.into_iter().filter(|body| body.rigid.is_none());
+    let soft = bodies.into_iter().filter(|body| body.driven().is_none());
     2.0 / soft.map(|body| 1.0 / value(body)).sum::<f64>()
 }
 

@@ -1,6 +1,7 @@
 //! Constants of a pair of size classes of particles: those that all modes share, and those that each mode has beside
 //! them.
 
+use std::cmp::Ordering;
 use std::fmt::Debug;
 
 use super::friction::Law;
@@ -22,7 +23,7 @@ pub struct Pair {
     /// Friction and damping over volume: a spring of `¼ M/Δp²` (Pa/m²), a dashpot of `ζ √(M ρ₀)/Δp`
     /// (Pa s/m²).
     pub friction: Law,
-    /// Share of heat that goes to the receiver: ½, or all where the other is rigid.
+    /// Share of heat that goes to the receiver: ½ of what is alike, else all to the softer one.
     pub heat_share: f64,
 }
 
@@ -118,13 +119,18 @@ impl Pair {
             spacing,
             inverse_spacing: 1.0 / spacing,
             friction: mode.resistance().map_or_else(Law::default, law),
-            heat_share: match [a, b].map(|body| body.rigid.is_some()) {
-                [false, false] => 0.5,
-                [false, true] => 1.0,
-                [true, _] => 0.0,
+            heat_share: match softness(a).cmp(&softness(b)) {
+                Ordering::Equal => 0.5,
+                Ordering::Greater => 1.0,
+                Ordering::Less => 0.0,
             },
         }
     }
+}
+
+/// Order of what takes heat: bodies that deform, rigid ones that forces move, and driven ones.
+fn softness(body: &Body) -> u8 {
+    u8::from(body.driven().is_none()) + u8::from(body.rigid.is_none())
 }
 
 /// Friction and damping of bodies that resist as `input` says. The softer body gives modulus and

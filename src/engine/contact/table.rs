@@ -104,7 +104,8 @@ impl ContactTable {
         let kept = case.bodies.iter().enumerate().filter(|(index, body)| {
             let own = named(*index).then_some(*index);
             let soft = case.contact_modulus(body) > 0.0;
-            let kind = (own, body.material, body.rigid.is_some(), soft);
+            let rigid = [body.rigid.is_some(), body.is_free()];
+            let kind = (own, body.material, rigid, soft);
             let count = seen.entry(kind).or_default();
             *count += 1;
             *count <= 2
@@ -323,10 +324,11 @@ fn group_ranges(groups: &Groups, size_classes: &SizeClasses) -> GroupRanges {
 
 /// Mode of contact between two bodies, or fragments of one.
 fn mode_between(case: &Case, a: usize, b: usize) -> ContactMode {
-    if [a, b].iter().all(|&body| case.bodies[body].rigid.is_some()) {
+    let [one, other] = [a, b].map(|body| &case.bodies[body]);
+    if one.driven().is_some() && other.driven().is_some() {
         ContactMode::None
     } else if a == b {
-        let own = case.self_contact.as_ref();
+        let own = case.self_contact.as_ref().filter(|_| one.rigid.is_none());
         own.map_or(ContactMode::None, SelfContact::mode)
     } else {
         case.contact_between(a, b).clone()

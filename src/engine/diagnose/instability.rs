@@ -58,7 +58,7 @@ pub(crate) fn fastest(comm: &Comm, particles: &ParticleStore, loads: &Loads) -> 
     let mut best = (u64::MAX, u64::MAX);
     // In a run that blows up, not in every step.
     for i in 0..particles.owned() {
-        if loads.has_motions() && loads.is_rigid(particles.load[i]) {
+        if loads.has_motions() && loads.is_driven(particles.load[i]) {
             continue;
         }
         // Positive doubles order as their bits, so that their complements order downwards.

@@ -6,7 +6,7 @@ use super::reason::Reason;
 use super::remembered::Remembered;
 use super::taken_out::Removed;
 use crate::contact::{PairExtremes, PairSums, SurfaceForces};
-use crate::loads::Loads;
+use crate::loads::{Loads, RigidState};
 use numerics::vector::{dot, norm};
 
 /// Ledger of one pair of bodies.
@@ -120,7 +120,7 @@ pub struct Passed {
     pub internal_energy: f64,
 }
 
-/// Sums over all particles that are no part of a rigid body (SI).
+/// Sums over all particles that are no part of a driven body (SI).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Totals {
@@ -323,6 +323,9 @@ pub struct RunState {
     /// Factor by which initial neighbours of the total form may be farther apart than they were; zero without.
     #[serde(default)]
     pub stretch: f64,
+    /// Rigid bodies that forces move.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rigid: Vec<RigidState>,
     /// Largest values over the run.
     pub worst: Worst,
 }

@@ -110,7 +110,7 @@ impl StepSums {
             mirrors.fold(particles, i);
             let (y, after) = (particles.position[i], particles.velocity[i]);
             let bits = particles.load.get(i);
-            if bits.is_some_and(|&bits| loads.is_rigid(bits)) {
+            if bits.is_some_and(|&bits| loads.is_driven(bits)) {
                 continue;
             }
             let mass = particles.mass[i];

@@ -24,7 +24,7 @@ impl KeptTotals {
 }
 
 impl Totals {
-    /// Of the particles of all ranks that are no part of a rigid body, with the energies of contact and of
+    /// Of the particles of all ranks that are no part of a driven body, with the energies of contact and of
     /// self-gravity (J). Collective.
     pub(crate) fn of(
         active: Active,
@@ -127,7 +127,7 @@ pub fn failed_mass(particles: &ParticleStore, bodies: usize, comm: &Comm) -> Vec
     sums.iter().map(ExactSum::value).collect()
 }
 
-/// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a rigid body,
+/// `Σ |(x − x̄) × m v|` (kg m²/s) over the particles of all ranks that are no part of a driven body,
 /// with x̄ (m) their centre of mass now. Collective.
 pub(crate) fn angular_momentum_scale(particles: &ParticleStore, loads: &Loads, comm: &Comm) -> f64 {
     let mut sums = loads.sum_free(particles, |i| {

@@ -68,8 +68,9 @@ impl Held<'_> {
         } = self;
         let bits = particles.load[i];
         let contact = particles.contact_acceleration.get(i);
-        let is_idle = || loads.is_rigid(bits) && contact.is_none_or(|c| *c == [0.0; 3]);
-        if bits == 0 || is_idle() {
+        let is_idle = || loads.is_driven(bits) && contact.is_none_or(|c| *c == [0.0; 3]);
+        // Forces alone move free bodies.
+        if bits & !loads.free.bits() == 0 || is_idle() {
             return None;
         }
         let contact = contact.copied().unwrap_or_default();

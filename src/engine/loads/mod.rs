@@ -4,16 +4,19 @@
 //! velocity in the middle, so that places follow the integral of V. In a half kick a load gives a
 //! particle the impulse that forces lack, `J = m (v_to − v_from) − ½Δt m a`, and with it the work
 //! `J · ½(v_from + v_to)`, which balances the energy of the half kick to round-off. A rigid body
-//! has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
+//! that is driven has no mass of its own here: what holds it gives the reaction of contact, `J = −½Δt m a_c`.
 
 mod absorption;
 mod held;
 mod pressures;
+mod rigid;
 mod sums;
 mod surface_motion;
 
 pub(crate) use absorption::Absorption;
 pub(crate) use pressures::Acting;
+use rigid::FreeBodies;
+pub use rigid::RigidState;
 pub(crate) use sums::sum_over;
 pub(crate) use surface_motion::{Placed, SurfaceStep};
 
@@ -70,7 +73,7 @@ pub(crate) trait Prescribe: Copy + Send {
     /// Corrects the mean velocity (m/s) in a half kick, as forces make it, of a particle with the
     /// velocity `whole` (m/s) at the whole step that begins or ends it and `middle` between.
     fn correct_mean(&self, whole: &[f64; 3], middle: &[f64; 3], mean: &mut [f64; 3]);
-    /// True if the particle is part of a rigid body.
+    /// True if the particle is part of a driven rigid body.
     fn is_rigid(&self) -> bool;
     /// Acceleration by pressures on faces (m/s²).
     #[inline(always)]
@@ -136,10 +139,15 @@ pub struct Loads {
     /// By bit of [`particles::ParticleStore::load`]: prescribed velocities, then rigid
     /// bodies. Ledgers have the same order, then come those of absorbing zones and of the surfaces.
     motions: Vec<Prescribed>,
-    /// Body of each rigid body's drive.
+    /// Rigid bodies.
     rigid_bodies: Vec<usize>,
     velocities: usize,
-    rigid_bits: u32,
+    /// Bits of those that are driven.
+    driven_bits: u32,
+    /// Those that forces move.
+    free: FreeBodies,
+    /// True on the one rank that books what holds these.
+    keeps_books: bool,
     pub(crate) absorption: Absorption,
     /// Mean pressures on faces in the step (Pa).
     pressures: Vec<f64>,
@@ -154,7 +162,8 @@ pub struct Loads {
 }
 
 impl Loads {
-    pub(crate) fn new(case: &Case) -> Self {
+    /// Of a case, on a rank that keeps the books of all, or not.
+    pub(crate) fn new(case: &Case, keeps_books: bool) -> Self {
         let rigid = |&b: &usize| case.bodies[b].rigid.is_some();
         let rigid_bodies: Vec<usize> = (0..case.bodies.len()).filter(rigid).collect();
         let velocities = case.loads.velocities.len();
@@ -164,9 +173,12 @@ impl Loads {
             "too many loads and rigid bodies"
         );
         let absorption = Absorption::new(case);
+        let free = FreeBodies::new(case, velocities, &rigid_bodies);
         let mut step = Self {
             motions: vec![Prescribed::default(); motions],
-            rigid_bits: (0..motions).fold(0, |bits, k| bits | u32::from(k >= velocities) << k),
+            driven_bits: (velocities..motions).fold(0, |bits, k| bits | 1 << k) & !free.bits(),
+            free,
+            keeps_books,
             rigid_bodies,
             velocities,
             surfaces: vec![SurfaceStep::default(); case.loads.surfaces.len()],
@@ -212,10 +224,16 @@ impl Loads {
         self.sums.len()
     }
 
+    /// True if a particle with these bits is part of a driven rigid body, which no sums count.
+    #[inline]
+    pub(crate) fn is_driven(&self, bits: u32) -> bool {
+        bits & self.driven_bits != 0
+    }
+
     /// True if a particle with these bits is part of a rigid body.
     #[inline]
     pub(crate) fn is_rigid(&self, bits: u32) -> bool {
-        bits & self.rigid_bits != 0
+        bits & (self.driven_bits | self.free.bits()) != 0
     }
 
     /// Works out the step from time `from` to `to` (s).
@@ -233,7 +251,7 @@ impl Loads {
         }
         for (n, &body) in self.rigid_bodies.iter().enumerate() {
             let k = self.velocities + n;
-            if let Some(motion) = &case.bodies[body].rigid {
+            if let Some(motion) = case.bodies[body].driven() {
                 self.motions[k] = Prescribed::new(motion, k, true, from, to);
             }
         }
@@ -270,6 +288,16 @@ impl Loads {
         all
     }
 
+    /// That of a particle with these bits at `x` (m), which may be part of a rigid body that forces move.
+    #[inline]
+    pub(crate) fn at(&self, bits: u32, x: &[f64; 3]) -> Prescribed {
+        if bits & self.free.bits() == 0 {
+            self.of(bits)
+        } else {
+            self.free.at(bits, x)
+        }
+    }
+
     /// Clears the components of a vector that are prescribed to a particle with these bits.
     #[inline]
     pub(crate) fn clear_prescribed(&self, bits: u32, vector: &mut [f64; 3]) {
@@ -285,12 +313,13 @@ impl Loads {
         size_of::<Prescribed>() * self.motions.capacity()
             + size_of::<SurfaceStep>() * self.surfaces.capacity()
             + size_of::<usize>() * self.rigid_bodies.capacity()
+            + self.free.memory()
             + self.absorption.memory()
             + size_of::<f64>() * self.pressures.capacity()
             + 4 * size_of::<ExactSum>() * self.sums.capacity()
     }
 
-    /// Adds the torque of gravity on what is no part of a rigid body to `torque`.
+    /// Adds the torque of gravity on what is no part of a driven body to `torque`.
     pub(crate) fn add_weight(&self, particles: &ParticleStore, torque: &mut [ExactSum; 3]) {
         if self.gravity == [0.0; 3] {
             return;

@@ -20,11 +20,11 @@ pub(crate) struct Acting<'a> {
 }
 
 impl Acting<'_> {
-    /// Acceleration of a particle by contact (m/s²), and its motion beside forces.
+    /// Acceleration by contact (m/s²) of a particle at `x` (m), and its motion beside forces.
     #[inline(always)]
-    pub fn on(&self, i: usize, loads: &Loads) -> ([f64; 3], Absorbed) {
+    pub fn on(&self, i: usize, x: &[f64; 3], loads: &Loads) -> ([f64; 3], Absorbed) {
         let contact = self.contact.get(i).copied().unwrap_or_default();
-        let prescribed = loads.of(self.load.get(i).copied().unwrap_or_default());
+        let prescribed = loads.at(self.load.get(i).copied().unwrap_or_default(), x);
         let zone = self.absorption.get(i).copied().unwrap_or_default();
         let rate = zone + loads.absorption.relaxing(self.body[i]);
         let absorbed = loads.absorption.of(prescribed, self.body[i], rate);
@@ -81,7 +81,7 @@ impl Loads {
         for n in 0..self.pressures.len() {
             let meant = |i: usize| particles.pressed[i] >> n & 1 == 1;
             let all = self.sum_where(particles, meant, |i| {
-                let (contact, motion) = acting.on(i, self);
+                let (contact, motion) = acting.on(i, &particles.position[i], self);
                 let v = &particles.velocity[i];
                 let mut total = std::array::from_fn(|a| {
                     particles.acceleration[i][a] + (contact[a] + self.gravity[a])

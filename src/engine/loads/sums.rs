@@ -1,4 +1,4 @@
-//! Exact sums over what is no part of a rigid body.
+//! Exact sums over what is no part of a driven body.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use numerics::gathered_sums::{self, GatheredSums};
 use particles::{Active, Block, GRAIN, KeptBlocks, ParticleStore};
 
 impl Loads {
-    /// Exact sums of `terms` of this rank's particles that are no part of a rigid body.
+    /// Exact sums of `terms` of this rank's particles that are no part of a driven body.
     pub(crate) fn sum_free<const N: usize>(
         &self,
         particles: &ParticleStore,
@@ -60,9 +60,9 @@ impl Loads {
         )
     }
 
-    /// True if a particle is no part of a rigid body.
+    /// True if a particle is no part of a driven body.
     fn is_free(&self, particles: &ParticleStore, i: usize) -> bool {
-        !self.has_motions() || !self.is_rigid(particles.load[i])
+        !self.has_motions() || !self.is_driven(particles.load[i])
     }
 }
 

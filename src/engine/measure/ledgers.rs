@@ -3,6 +3,7 @@
 use super::Whole;
 use crate::contact::PairExtremes;
 use crate::diagnose::{LoadState, PairState, Passed, Removed, RunState, Totals, Worst};
+use crate::loads::RigidState;
 
 /// A state with all sums and ledgers that are reported brought to the whole model; what a step reads stays that of what is
 /// computed.
@@ -27,6 +28,7 @@ pub fn whole_state(state: &RunState, whole: Whole) -> RunState {
         angular_impulse: whole.angular_momentum(state.angular_impulse, gained),
         pairs: state.pairs.iter().map(|part| pair(part, whole)).collect(),
         loads: state.loads.iter().map(|part| load(part, whole)).collect(),
+        rigid: state.rigid.iter().map(|part| rigid(part, whole)).collect(),
         capped_reliefs: count(state.capped_reliefs),
         interpenetrated: count(state.interpenetrated),
         uncorrected: count(state.uncorrected),
@@ -92,6 +94,15 @@ fn load(part: &LoadState, whole: Whole) -> LoadState {
         work: whole.sum(part.work),
         heat_power: whole.sum(part.heat_power),
         heat: whole.sum(part.heat),
+        ..*part
+    }
+}
+
+fn rigid(part: &RigidState, whole: Whole) -> RigidState {
+    RigidState {
+        mass: whole.sum(part.mass),
+        force: whole.momentum(part.force),
+        torque: whole.angular_momentum(part.torque, [0.0; 3]),
         ..*part
     }
 }

@@ -25,6 +25,8 @@ pub(super) struct MaterialUpdate<'a> {
     material_of_body: &'a [usize],
     /// By group: whether it is a rigid body.
     rigid: &'a [bool],
+    /// Sound speed of particles without stress, by body (m/s).
+    free_sound: &'a [f64],
     dt: f64,
     /// Specific energies are those after the first half kick.
     points: MaterialPoints<'a>,
@@ -97,6 +99,7 @@ impl<'a> MaterialUpdate<'a> {
             rest: &sums.resting.states,
             material_of_body: &sums.material_of_body,
             rigid: &lists.groups.rigid,
+            free_sound: &sums.free_sound,
             dt: step.dt,
             points,
             recording: Recording::new(records, sums, step),
@@ -276,8 +279,9 @@ impl<'a> MaterialUpdate<'a> {
         let work = OWN_WORK + u32::try_from(neighbours).unwrap_or(u32::MAX / 2);
         for &index in &cluster.receivers[..cluster.lanes] {
             let i = self.images[index as usize].slot();
+            let speed = self.free_sound[self.points.body[i] as usize];
             // SAFETY: particle `i` belongs to this cluster alone, and this thread has the cluster.
-            unsafe { self.free(i, 0.0, work) };
+            unsafe { self.free(i, speed, work) };
         }
     }
 

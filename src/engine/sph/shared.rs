@@ -25,6 +25,9 @@ pub(super) struct Sums {
     pub materials: Vec<Material>,
     pub resting: Resting,
     pub material_of_body: Vec<usize>,
+    /// By body: sound speed (m/s) by which particles without stress choose a step, that of the material of rigid bodies
+    /// that forces move.
+    pub free_sound: Vec<f64>,
     /// True if one of these asks for what only some laws must know.
     pub needs_particle: bool,
     /// Pressure (Pa) that counts as arrived, by material.
@@ -59,6 +62,12 @@ impl Sums {
                 .map(|material| case.measure.arrival_of(material))
                 .collect(),
             material_of_body: case.bodies.iter().map(|b| b.material).collect(),
+            free_sound: (case.bodies.iter())
+                .map(|body| {
+                    let material = body.is_free().then(|| &case.materials[body.material]);
+                    material.map_or(0.0, Material::longitudinal_speed)
+                })
+                .collect(),
             needs_particle: case.materials.iter().any(Material::needs_particle),
             from_mirrors: Vec::new(),
             uncorrected: 0,

@@ -3,7 +3,7 @@
 use crate::contact::{Connectivity, ContactTable};
 use crate::fragments::{BYTES_OF_SEARCH, Labels};
 use crate::sph::Sph;
-use model::{Case, NumericalFailurePolicy, SphForm};
+use model::{Body, Case, NumericalFailurePolicy, SphForm};
 use particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
 
 /// Options of the table of fields that a case does not have.
@@ -13,6 +13,7 @@ pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let localises = case.materials.iter().any(|m| m.failure.localises());
     let used = [
         (Owner::LOADS, driven),
+        (Owner::FREE_RIGID, case.bodies.iter().any(Body::is_free)),
         (Owner::PRESSURES, !case.loads.pressures.is_empty()),
         (Owner::SELF_GRAVITY, case.loads.self_gravity.is_some()),
         (Owner::ABSORBERS, !case.loads.absorbers.is_empty()),

@@ -54,7 +54,7 @@ impl Kick<'_> {
     }
 }
 
-/// Calls `$work` with a function of a particle: its acceleration by contact (m/s²) and its loads, which
+/// Calls `$work` with a function of a particle and its place (m): its acceleration by contact (m/s²) and its loads, which
 /// have a type of their own where there are none.
 macro_rules! with_outside {
     ($loads:expr, $particles:expr, $name:ident => $work:expr) => {{
@@ -68,19 +68,19 @@ macro_rules! with_outside {
                 pressed: &$particles.pressed,
                 face: &$particles.face,
             };
-            let $name = |i: usize| acting.on(i, $loads);
+            let $name = |i: usize, x: &[f64; 3]| acting.on(i, x, $loads);
             $work
         } else if $loads.has_motions() {
-            let $name = |i: usize| {
+            let $name = |i: usize, x: &[f64; 3]| {
                 let contact = contact.get(i).copied().unwrap_or_default();
-                (contact, $loads.of(bits[i]))
+                (contact, $loads.at(bits[i], x))
             };
             $work
         } else if !contact.is_empty() {
-            let $name = |i: usize| (contact[i], Free);
+            let $name = |i: usize, _: &[f64; 3]| (contact[i], Free);
             $work
         } else {
-            let $name = |_: usize| ([0.0; 3], Free);
+            let $name = |_: usize, _: &[f64; 3]| ([0.0; 3], Free);
             $work
         }
     }};
@@ -151,7 +151,7 @@ impl Drifting<'_> {
         rates: &Rates,
         inactive: &Inactive,
         smoothing: &Smoothing,
-        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
+        outside: impl Fn(usize, &[f64; 3]) -> ([f64; 3], D) + Sync,
     ) -> ExactSum {
         let dt = kick.dt;
         let half = 0.5 * dt;
@@ -172,7 +172,7 @@ impl Drifting<'_> {
                 |mut work, (chunk, (v, e, x, v_p, rho_p, h))| {
                     inactive.each_active(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
-                        let (contact, prescribed) = outside(i);
+                        let (contact, prescribed) = outside(i, &x[k]);
                         let a = &rates.acceleration[i];
                         let mut total = kick.total(i, a, &contact);
                         let mut mean = add_scaled(&v[k], 0.25 * dt, &total);
@@ -254,7 +254,7 @@ impl Kicking<'_> {
         criteria: &Criteria<F>,
         inactive: &Inactive,
         predicted_velocity: &[[f64; 3]],
-        outside: impl Fn(usize) -> ([f64; 3], D) + Sync,
+        outside: impl Fn(usize, &[f64; 3]) -> ([f64; 3], D) + Sync,
     ) -> Kicked {
         let dt = kick.dt;
         let half = 0.5 * dt;
@@ -274,7 +274,7 @@ impl Kicking<'_> {
                 |(mut work, mut best, mut span), (chunk, (v, e, de))| {
                     inactive.each_active(chunk * GRAIN, v.len(), |k| {
                         let i = chunk * GRAIN + k;
-                        let (contact, prescribed) = outside(i);
+                        let (contact, prescribed) = outside(i, &fields.position[i]);
                         let a = &fields.acceleration[i];
                         let forces = kick.total(i, a, &contact);
                         let mut total = forces;

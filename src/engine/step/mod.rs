@@ -27,6 +27,7 @@ pub use crate::diagnose::{
     LoadState, NearestPair, NumericalFailure, PairState, Passed, PastStep, PostMortem, Reason,
     Removed, RunState, Totals, Worst,
 };
+pub use crate::loads::RigidState;
 pub use candidate::StepControl;
 pub use contact_stress::Carried;
 pub use error::{SetupError, StepError};

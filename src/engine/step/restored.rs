@@ -2,7 +2,7 @@
 
 use super::error::SetupError;
 use crate::diagnose::{PairState, RunState};
-use crate::loads::Loads;
+use crate::loads::{Loads, RigidState};
 use crate::measure::Measures;
 use comm::Comm;
 use model::Case;
@@ -31,7 +31,7 @@ pub(super) fn require_own(
     particles: &ParticleStore,
 ) -> Result<(), SetupError> {
     let (own, bodies) = (beginning.state, beginning.case.bodies.len());
-    let checks: [Check; 9] = [
+    let checks: [Check; 10] = [
         ("it has other pairs of bodies or loads", &|| {
             !are_pairs(beginning.case, &state.pairs) || state.loads.len() != own.loads.len()
         }),
@@ -48,6 +48,11 @@ pub(super) fn require_own(
         ("it has other bodies of the total form", &|| {
             let torn = state.torn.iter().any(|torn| torn.body >= bodies);
             torn || ![0, bodies].contains(&state.total.len())
+        }),
+        ("it has other rigid bodies", &|| {
+            let bodies =
+                |of: &RunState| of.rigid.iter().map(|rigid| rigid.body).collect::<Vec<_>>();
+            bodies(state) != bodies(own) || !state.rigid.iter().all(RigidState::is_sound)
         }),
         ("its times are none", &|| {
             !(state.dt > 0.0 && state.last_dt >= 0.0 && state.time >= 0.0)

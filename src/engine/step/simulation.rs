@@ -69,11 +69,13 @@ impl Simulation {
         let Self {
             case,
             particles,
+            state,
             space,
             loads,
             ..
         } = &mut simulation;
         setup::populate(comm, case, loads, &mut space.partition, particles)?;
+        loads.begin_free(comm, case, particles, &mut state.rigid);
         simulation.begin(comm)?;
         simulation.open_departures();
         Ok(simulation)
@@ -125,6 +127,7 @@ impl Simulation {
     fn empty(case: Case, comm: &Comm, layout: &InitialLayout, partition: Partition) -> Self {
         let contact = Contact::new(&case);
         let table = &contact.table;
+        let loads = Loads::new(&case, comm.is_root());
         let accounts = Accounts::new(&case, table);
         let particles = store_of(&case);
         Self {
@@ -134,6 +137,7 @@ impl Simulation {
                 loads: vec![LoadState::default(); case.load_names().count()],
                 passed: vec![Passed::default(); accounts.measures.witnesses.ledgers()],
                 total: case.bodies.iter().map(|body| body.total).collect(),
+                rigid: loads.free_bodies(),
                 ..RunState::default()
             },
             timers: Timers::default(),
@@ -144,7 +148,7 @@ impl Simulation {
             },
             search: Search::new(&case, table, layout),
             sph: Sph::new(&case, comm.size(), &contact.table.groups, layout),
-            loads: Loads::new(&case),
+            loads,
             self_gravity: SelfGravity::new(&case),
             accounts,
             contact,
@@ -268,12 +272,14 @@ impl Simulation {
         loads.book_drag(particles);
         loads.book_pressures(particles, dt, true);
         state.book_first_half(loads, dt);
+        loads.advance_free(&mut state.rigid, dt);
         particles.resize_halo(0);
         search.activity.reactivate_moved(particles);
         let active = search.active_mut(particles);
         let work = integrate::kick_and_drift(active, loads, &sph.smoothing, dt);
         sums.contact_work.merge(&work);
         sph.drift(particles, loads, dt);
+        loads.carry_free(particles, &state.rigid, dt);
         sums.cross_planes(particles, space.halo.mirrors(), loads);
     }
 
@@ -391,6 +397,7 @@ impl Simulation {
             gravity.act(comm, particles, halo.mirrors(), &mut contact.sums);
             timers.lap(Phase::SelfGravity);
         }
+        loads.press_free(comm, particles, &mut state.rigid);
         if finds_folds(state.step) {
             sph.find_folds(particles, lists);
         }
@@ -405,6 +412,7 @@ impl Simulation {
         let Self {
             case,
             particles,
+            state,
             step_control,
             search,
             sph,
@@ -414,6 +422,7 @@ impl Simulation {
         } = self;
         loads.book_drag(particles);
         loads.book_pressures(particles, dt, false);
+        loads.kick_free(&mut state.rigid, dt);
         let criteria = step_control.criteria(sph, loads.gravity);
         let active = search.active_mut(particles);
         let kicked = with_formulation!(case.sph.form, Form => {

@@ -173,8 +173,16 @@ tables! {
         fibres: Option<Spanned<FibresParams>> => "1 along x, 3 along z";
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
-        /// True if the body is rigid and keeps its velocity, whatever acts on it.
+        /// True if the body is rigid: it keeps its velocity, whatever acts on it, unless it is `free`.
         rigid: Option<bool> = false;
+        /// True if forces move the rigid body.
+        free: Option<Spanned<bool>> = false;
+        /// Axes along which a free rigid body moves.
+        moves: Option<Spanned<Vec<Spanned<Axis>>>> => "all";
+        /// Axes about which it turns: one, or none.
+        turns: Option<Spanned<Vec<Spanned<Axis>>>> => "all";
+        /// Point that stays where it is, and about which a free rigid body turns.
+        pivot: Option<Spanned<Vec<Placed<Length>>>> => "none";
         /// Motion of a rigid body.
         motion: Option<Spanned<MotionParams>> => "its `velocity` for ever";
     }

@@ -22,10 +22,11 @@ use super::{
 const TOLD: usize = 5;
 
 /// Files that a restart changes before it has a checkpoint.
-const CHANGED: [&str; 16] = [
+const CHANGED: [&str; 17] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
+    "rigid.csv",
     "removed.csv",
     "departed.csv",
     "fragments.csv",

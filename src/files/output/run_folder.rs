@@ -28,10 +28,11 @@ const TROUBLE: &str = "trouble";
 pub(super) const SNAPSHOT_ENDING: &str = ".vtkhdf";
 
 /// Tables of sums that state the share of the model that was computed where it has symmetry planes.
-const OF_WHOLE: [&str; 5] = [
+const OF_WHOLE: [&str; 6] = [
     "history.csv",
     "contacts.csv",
     "loads.csv",
+    "rigid.csv",
     "removed.csv",
     "departed.csv",
 ];
@@ -359,6 +360,8 @@ paths! {
     contacts: "contacts.csv";
     /// Table of loads.
     loads: "loads.csv";
+    /// Table of rigid bodies that forces move.
+    rigid: "rigid.csv";
     /// Table of the mass, momentum and energy of removed particles.
     removed: "removed.csv";
     /// Table of the mass, momentum and energy of particles that left the box of interest.

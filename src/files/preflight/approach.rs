@@ -18,7 +18,7 @@ const FEW: usize = 1000;
 /// Smallest and largest coordinates (m) of a body's particles.
 pub(super) type Ends = ([f64; 3], [f64; 3]);
 
-/// Two bodies, of which one at least deforms.
+/// Two bodies, of which one at least is not driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Approach {
     /// Their indices.
@@ -92,7 +92,7 @@ fn may_meet(case: &Case, boxes: [Ends; 2], bodies: [usize; 2], until: f64) -> bo
 /// Returns true if a body has one velocity, which nothing but other bodies changes.
 pub fn flies_straight(case: &Case, body: usize) -> bool {
     let driven = case.loads.velocities.iter().any(|load| load.body == body);
-    let motion = case.bodies[body].rigid.as_ref();
+    let motion = case.bodies[body].driven();
     let table = motion.is_some_and(|motion| motion.times.len() > 1);
     let falls = motion.is_none() && case.loads.moves_all();
     let spreads = case.bodies[body].speed_spread() > 0.0;
@@ -102,7 +102,7 @@ pub fn flies_straight(case: &Case, body: usize) -> bool {
 fn approach(searches: &Searches, boxes: [Ends; 2], bodies: [usize; 2]) -> Option<Approach> {
     let case = searches.case;
     let [first, second] = bodies.map(|body| &case.bodies[body]);
-    if first.rigid.is_some() && second.rigid.is_some() {
+    if first.driven().is_some() && second.driven().is_some() {
         return None;
     }
     let velocity = first.velocity - second.velocity;

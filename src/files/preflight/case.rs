@@ -39,7 +39,8 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
         ));
     }
     // Bodies that are driven, fall or meet their mirror images move without an impact.
-    let acting = case.load_names().count() - case.loads.absorbers.len();
+    let free = case.bodies.iter().filter(|body| body.is_free()).count();
+    let acting = case.load_names().count() - case.loads.absorbers.len() - free;
     let driven = acting > 0;
     let straight = (0..case.bodies.len()).all(|body| flies_straight(case, body));
     let towards_mirror = case.symmetry.iter().any(|plane| {
@@ -52,7 +53,7 @@ pub fn meetings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
     let mut velocities = case.bodies.iter().map(|body| body.velocity);
     let first = velocities.next();
     let moves = velocities.any(|velocity| Some(velocity) != first)
-        && case.bodies.iter().any(|body| body.rigid.is_none());
+        && case.bodies.iter().any(|body| body.driven().is_none());
     if driven || !straight || towards_mirror || !moves {
         return;
     }
@@ -197,7 +198,7 @@ pub fn soft_gases(case: &Case, messages: &mut Vec<String>) {
             .surfaces
             .iter()
             .any(|surface| surface.bodies[index]);
-        if is_held && body.rigid.is_none() && case.contact_modulus(body) <= 0.0 {
+        if is_held && body.driven().is_none() && case.contact_modulus(body) <= 0.0 {
             messages.push(format!(
                 "`{}` is a gas without pressure, and rigid surfaces push with a gas's modulus at its reference pressure or \
                  that of the start: it passes through them; give its `eos.ideal_gas` a `reference_pressure`",

@@ -140,9 +140,9 @@ fn pairs(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) {
 
 /// True if two bodies have contact that is not of one continuum, as bodies joined by the kernel are.
 fn pushes(case: &Case, bodies: [usize; 2]) -> bool {
-    let rigid = bodies.iter().all(|&body| case.bodies[body].rigid.is_some());
+    let driven = (bodies.iter()).all(|&body| case.bodies[body].driven().is_some());
     let [a, b] = bodies;
-    !rigid && case.contact_between(a, b).class().is_some()
+    !driven && case.contact_between(a, b).class().is_some()
 }
 
 /// The pair of bodies with the most different spacings that may meet at a time that is not foreseen; the first body

@@ -20,7 +20,7 @@ pub fn expected_step(case: &Case) -> Option<f64> {
     let dt = case
         .bodies
         .iter()
-        .filter(|body| body.rigid.is_none())
+        .filter(|body| body.driven().is_none())
         .map(|body| {
             let material = &case.materials[body.material];
             let signal = signal(case, material.longitudinal_speed(), APPROACH[1] * speed);
@@ -45,7 +45,7 @@ pub fn expected_steps(case: &Case, approaches: &[Approach], from: f64) -> Option
     let Some(([begin, until], signal)) = shock(case, approaches) else {
         return Some(all);
     };
-    let lengths = case.bodies.iter().filter(|body| body.rigid.is_none());
+    let lengths = case.bodies.iter().filter(|body| body.driven().is_none());
     let length = lengths.fold(f64::INFINITY, |least, body| {
         least.min(body.smoothing_length)
     });

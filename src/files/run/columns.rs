@@ -3,7 +3,7 @@
 use super::load::{Group, Load};
 use crate::output::{Column, Value, unit_of_model};
 use engine::measure::{BodyFigures, Crossing, GaugeRow};
-use engine::step::{LoadState, PairState, Passed, Removed, RunState};
+use engine::step::{LoadState, PairState, Passed, Removed, RigidState, RunState};
 
 /// Columns with SI units, by length or area in a model of fewer dimensions. A name that ends with `*` is
 /// that of three columns.
@@ -158,6 +158,19 @@ tables! {
         "impulse_*", "N s", load.impulse;
         "work", "J", load.work;
         "heat", "J", load.heat;
+    }
+
+    /// A row of a rigid body that forces move.
+    RIGID, rigid_row(time: f64, body: &'a str, rigid: &RigidState) {
+        "time", "s", time;
+        "body", "", body;
+        "place_*", "m", rigid.place;
+        "velocity_*", "m/s", rigid.velocity;
+        "spin_*", "rad/s", rigid.spin();
+        "attitude_w", "", rigid.attitude[0];
+        "attitude_*", "", [rigid.attitude[1], rigid.attitude[2], rigid.attitude[3]];
+        "force_*", "N", rigid.force;
+        "torque_*", "N m", rigid.torque;
     }
 
     /// A row of the particles removed from a body.

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::columns::{
     ABSORBED, BODIES, CONTACTS, CROSSINGS, DEPARTED, DEPARTURE, FAILURE, GAUGES, HISTORY, LOADS,
-    PERFORMANCE, RANKS, REMOVED, SELF_GRAVITY, WITNESS, absorbed, body_row, columns, contact,
-    crossing_row, departed, departure, failure, gauge_row, history, load_row, performance,
-    rank_row, removed, self_gravity, witness_row,
+    PERFORMANCE, RANKS, REMOVED, RIGID, SELF_GRAVITY, WITNESS, absorbed, body_row, columns,
+    contact, crossing_row, departed, departure, failure, gauge_row, history, load_row, performance,
+    rank_row, removed, rigid_row, self_gravity, witness_row,
 };
 use super::load::Load;
 use crate::output::gauge_records::{self, GaugeRecords};
@@ -22,6 +22,7 @@ pub struct Tables {
     history: Table,
     contacts: Table,
     loads: Option<Table>,
+    rigid: Option<Table>,
     removed: Option<Table>,
     departed: Option<Table>,
     fragments: Option<Table>,
@@ -160,6 +161,9 @@ impl Tables {
             loads: has_loads
                 .then(|| stating(&folder.loads(), &columns(LOADS)))
                 .transpose()?,
+            rigid: (!simulation.state.rigid.is_empty())
+                .then(|| stating(&folder.rigid(), &columns(RIGID)))
+                .transpose()?,
             removed: removes
                 .then(|| stating(&folder.removed(), &columns(REMOVED)))
                 .transpose()?,
@@ -226,6 +230,12 @@ impl Tables {
         if let Some(table) = &mut self.loads {
             for (name, load) in case.load_names().zip(&told(table).loads) {
                 table.row(&load_row(state.time, name, load))?;
+            }
+        }
+        if let Some(table) = &mut self.rigid {
+            for rigid in &told(table).rigid {
+                let body = &case.bodies[rigid.body].name;
+                table.row(&rigid_row(state.time, body, rigid))?;
             }
         }
         if let Some(table) = &mut self.removed {
@@ -374,6 +384,7 @@ impl Tables {
         ];
         let some = [
             &self.loads,
+            &self.rigid,
             &self.removed,
             &self.departed,
             &self.fragments,

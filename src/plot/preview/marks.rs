@@ -84,7 +84,7 @@ pub fn velocities(case: &Case) -> Vec<Flight> {
     let bodies = case.bodies.iter().enumerate().filter_map(|(index, body)| {
         let (lower, upper) = super::extent::of_body(body, case)?;
         let middle: [f64; 3] = std::array::from_fn(|a| 0.5 * (lower[a] + upper[a]));
-        let velocity = match &body.rigid {
+        let velocity = match body.driven() {
             Some(motion) => std::array::from_fn(|a| motion.velocity(a, 0.0)),
             None => body.velocity.into(),
         };

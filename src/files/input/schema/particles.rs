@@ -73,6 +73,11 @@ impl super::BodyParams {
         shape.or(particles).unwrap_or_else(|| self.name.span())
     }
 
+    /// True if forces move it though it is rigid.
+    pub fn is_free(&self) -> bool {
+        self.free.as_ref().is_some_and(|free| *free.get_ref())
+    }
+
     /// True if a file tells what it is.
     pub fn is_of_file(&self) -> bool {
         let of_file = |shape: &ShapeParams| shape.stl.is_some() || shape.obj.is_some();

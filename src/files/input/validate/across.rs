@@ -46,11 +46,12 @@ fn goes(motion: &Motion, plane: &SymmetryPlane) -> bool {
 fn bodies(case: &Case, params: &CaseParams, plane: &SymmetryPlane) -> Result<(), Diagnostic> {
     let cut = |body: &Body| is_cut(body, case.dimension, plane);
     for (body, table) in case.bodies.iter().zip(&params.body) {
-        let moves = match &body.rigid {
+        let moves = match body.driven() {
             Some(motion) => goes(motion, plane),
             None => flows(case, body, plane),
         };
-        if moves && cut(body) {
+        // All planes cut a free rigid body.
+        if moves && (body.is_free() || cut(body)) {
             let motion = table.get_ref().motion.as_ref();
             let at = motion.map_or_else(|| key_span(table, "velocity"), Spanned::span);
             return Err(refused(&format!("`{}`", body.name), plane, at));

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use toml::Spanned;
 
+use super::freedom::freedom;
 use super::grading::{finest, graded, grading};
 use super::initial;
 use super::lattice::lattice;
@@ -89,7 +90,7 @@ impl Reader<'_> {
             }
             bodies.push(body);
         }
-        if bodies.iter().all(|body| body.rigid.is_some()) {
+        if bodies.iter().all(|body| body.driven().is_some()) {
             return Err(Diagnostic::new(params[0].span(), "every body is rigid"));
         }
         self.check_size(params, &bodies)?;
@@ -112,6 +113,7 @@ impl Reader<'_> {
         names::check(&params.name, "body")?;
         let material = self.material(params, table)?;
         let (velocity, rigid, varied) = self.motion(params)?;
+        let spin = self.angular_velocity(params)?;
         let density = params.density()?;
         let (shape, lattice) = self.form(params, material, table)?;
         let mut body = Body {
@@ -123,8 +125,13 @@ impl Reader<'_> {
             material,
             lattice,
             velocity,
-            angular_velocity: self.angular_velocity(params)?,
+            angular_velocity: spin,
             rigid,
+            freedom: freedom(
+                params,
+                [velocity, spin],
+                (self.dimension, self.case.symmetry.len()),
+            )?,
             density,
             initial: initial::initial(params, varied, self.dimension)?,
         };
@@ -212,14 +219,14 @@ impl Reader<'_> {
         Ok((shape, lattice))
     }
 
-    /// Index of the material; one beyond the last for a rigid body that names none.
+    /// Index of the material; one beyond the last for a driven body that names none.
     fn material(
         &self,
         params: &BodyParams,
         table: &Spanned<BodyParams>,
     ) -> Result<usize, Diagnostic> {
         let Some(name) = &params.material else {
-            if params.rigid == Some(true) {
+            if params.rigid == Some(true) && !params.is_free() {
                 return Ok(self.materials.len());
             }
             let title = "the key `material` is missing";
@@ -244,6 +251,17 @@ impl Reader<'_> {
         if let Some(given) = given.filter(|_| rigid && varied.is_some()) {
             let title = "a rigid body has one velocity: its `velocity` cannot vary";
             return Err(Diagnostic::new(given.span(), title));
+        }
+        if let Some(free) = params.free.as_ref().filter(|free| *free.get_ref()) {
+            if let Some(table) = &params.motion {
+                let title = "forces move a free rigid body: it has no `motion`";
+                return Err(Diagnostic::new(table.span(), title));
+            }
+            if !rigid {
+                let title = "only a rigid body is `free`: forces move all others anyway";
+                return Err(Diagnostic::new(free.span(), title));
+            }
+            return Ok((velocity, Some(Motion::default()), None));
         }
         let Some(table) = &params.motion else {
             let motion = rigid.then(|| Motion::constant(velocity.into()));
@@ -271,9 +289,9 @@ impl Reader<'_> {
         let Some(given) = &params.angular_velocity else {
             return Ok(Vec3::zeros());
         };
-        if params.rigid == Some(true) {
+        if params.rigid == Some(true) && !params.is_free() {
             let title = "a rigid body does not turn: it has no `angular_velocity`";
-            return Err(Diagnostic::new(given.span(), title));
+            return Err(Diagnostic::new(given.span(), title).help("a `free` one does"));
         }
         let (rates, span) = match given.get_ref() {
             AngularVelocityParams::Own(rates) => (rates, given.span()),
@@ -353,8 +371,17 @@ impl Reader<'_> {
         let gap = near.map_or(0.5, |x| (x - plane.position) / spacing);
         let is_cut = populate::bounds(body, self.dimension)
             .is_some_and(|(lower, _)| lower[axis.index()] <= plane.position);
+        // One that begins at the plane goes on behind it.
+        if body.is_free() && !is_cut && gap > 1.0 {
+            let title = format!(
+                "the symmetry plane of {} does not cut the free rigid body `{}`, which could pass through it",
+                axis.name(),
+                body.name
+            );
+            return Err(warn(title).help("model the whole without the plane"));
+        }
         let turns_across = (0..3).any(|a| a != axis.index() && body.angular_velocity[a] != 0.0);
-        if is_cut && turns_across {
+        if (is_cut || body.is_free()) && turns_across {
             let title = format!(
                 "`{}` is cut by the symmetry plane of {}, so that it can turn only about that axis",
                 body.name,

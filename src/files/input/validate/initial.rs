@@ -180,14 +180,18 @@ fn fits_material(case: &Case, body: &Body, params: &BodyParams) -> Result<(), Di
 /// A turn about any point is one about the centre, which then has a velocity by it.
 fn turn_about(body: &mut Body, params: &BodyParams, dimension: usize) -> Result<(), Diagnostic> {
     let turn = params.angular_velocity.as_ref().map(Spanned::get_ref);
-    let Some(AngularVelocityParams::About(table)) = turn else {
-        return Ok(());
+    let point = match (body.freedom.pivot, turn) {
+        (Some(pivot), _) => pivot,
+        (None, Some(AngularVelocityParams::About(table))) => {
+            components("about", &table.about, dimension)?;
+            let mut point = Vec3::zeros();
+            for (axis, given) in table.about.get_ref().iter().enumerate() {
+                point[axis] = given.get_ref().metres(body.lattice.spacing);
+            }
+            point
+        }
+        _ => return Ok(()),
     };
-    components("about", &table.about, dimension)?;
-    let mut point = Vec3::zeros();
-    for (axis, given) in table.about.get_ref().iter().enumerate() {
-        point[axis] = given.get_ref().metres(body.lattice.spacing);
-    }
     let arm = Vec3::from_fn(|axis, _| {
         if axis < dimension {
             body.shape.centre()[axis] - point[axis]

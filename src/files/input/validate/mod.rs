@@ -13,6 +13,7 @@ mod eos;
 mod failure;
 mod fibres;
 mod fragments;
+mod freedom;
 mod grading;
 mod initial;
 mod lattice;

@@ -55,7 +55,9 @@ fn waiting(
         })?;
         let held = &case.bodies[body];
         let mut loads = case.loads.velocities.iter().chain(&all);
-        let refused = if held.rigid.is_some() {
+        let refused = if held.is_free() {
+            Some("is rigid and free, and cannot wait")
+        } else if held.rigid.is_some() {
             Some("is rigid and can wait by its `motion`")
         } else if held.angular_velocity != Vec3::zeros() || held.initial.velocity.is_some() {
             Some("begins with velocities that differ from place to place, and cannot wait")

@@ -85,16 +85,16 @@ impl Reader<'_> {
         })
     }
 
-    /// Flags of the bodies that feel a surface: those named, or all that are not rigid.
+    /// Flags of the bodies that feel a surface: those named, or all that are not driven.
     fn acts_on(&self, names: Option<&[Spanned<String>]>) -> Result<Vec<bool>, Diagnostic> {
-        let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.rigid.is_none()).collect();
+        let mut bodies: Vec<bool> = self.bodies.iter().map(|b| b.driven().is_none()).collect();
         let Some(names) = names else {
             return Ok(bodies);
         };
         bodies.fill(false);
         for name in names {
             let (index, body) = self.body(name)?;
-            if body.rigid.is_some() {
+            if body.driven().is_some() {
                 let title = format!("the body `{}` is rigid: no surface moves it", body.name);
                 return Err(Diagnostic::new(name.span(), title));
             }
