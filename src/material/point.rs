@@ -119,7 +119,7 @@ macro_rules! point_fields {
             fibre: Vector, Memory;
             /// Direction 3 of the matter, a unit vector; zero without directions.
             normal: Vector, Memory;
-            /// Elastic strain in the frame of the directions, `11 22 33 12 13 23`.
+            /// Elastic strain of matter with directions, `xx yy zz xy xz yz`.
             elastic_strain: Symmetric, Memory;
             /// Strain of open cracks across direction 1.
             opening_1: Scalar, Memory;

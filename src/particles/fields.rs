@@ -146,8 +146,8 @@ particle_fields! {
     fibre: Vector,                        "",       State,    -,              IfHeld,   DIRECTIONS;
     /// Direction 3 of matter with directions of its own, across its layers; zero in other matter.
     normal: Vector,                       "",       State,    -,              OnDemand, DIRECTIONS;
-    /// Elastic strain of such matter in the frame of its directions, 11 22 33 12 13 23.
-    elastic_strain: Symmetric as Same,    "",       State,    -,              Never,    DIRECTIONS;
+    /// Elastic strain of such matter.
+    elastic_strain: Symmetric,            "",       State,    -,              OnDemand, DIRECTIONS;
     /// Strain of open cracks across direction 1 of such matter.
     opening_1: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
     /// Strain of open cracks across its direction 2.

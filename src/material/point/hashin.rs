@@ -28,7 +28,7 @@
 use serde::Deserialize;
 
 use super::damage::SPRAY;
-use super::orthotropic::{bear, frame, solid_share, symmetric};
+use super::orthotropic::{bear, frame, held_strain, hold_strain, solid_share};
 use super::{Conditions, FAILED, LANES, Lanes, Law, PointBatch};
 use crate::{at_least, at_most};
 
@@ -176,10 +176,10 @@ impl Hashin {
 
     /// Opens and closes the cracks of lane k.
     fn advance(&self, point: &mut PointBatch, k: usize, now: &Conditions) {
-        let share = solid_share(point, k);
+        let (axes, share) = (frame(point, k), solid_share(point, k));
         let mut of = Cracked {
             now,
-            strain: symmetric(&point.elastic_strain, k),
+            strain: held_strain(point, k, &axes),
             pressure: point.pressure[k] / share,
         };
         let mut changed = false;
@@ -205,16 +205,14 @@ impl Hashin {
         if !changed {
             return;
         }
-        for c in 0..6 {
-            point.elastic_strain[c][k] = of.strain[c];
-        }
+        hold_strain(point, k, &axes, &of.strain);
         let share = solid_share(point, k);
         point.pressure[k] = of.pressure * share;
         let mut stress = of.stress();
         for component in &mut stress {
             *component *= share;
         }
-        bear(point, k, &frame(point, k), &stress);
+        bear(point, k, &axes, &stress);
         let least = at_most(
             point.fibre_damage[k],
             at_most(point.matrix_damage[k], point.delamination[k]),

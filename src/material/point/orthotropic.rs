@@ -24,7 +24,7 @@
 
 use super::jaumann::conjugate;
 use super::neo_hookean::increment;
-use super::{Conditions, Contradiction, FAILED, LANES, Lanes, Law, PointBatch};
+use super::{Conditions, Contradiction, FAILED, LANES, Law, PointBatch};
 use crate::at_least;
 use numerics::vector::dot;
 
@@ -214,7 +214,7 @@ pub(super) fn frame(point: &PointBatch, k: usize) -> [f64; 9] {
 
 /// The transposed matrix.
 #[inline(always)]
-pub(super) fn transposed(a: &[f64; 9]) -> [f64; 9] {
+fn transposed(a: &[f64; 9]) -> [f64; 9] {
     [a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]]
 }
 
@@ -251,10 +251,23 @@ fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// One lane of a symmetric tensor.
+/// Elastic strain of lane k in its `frame`.
 #[inline(always)]
-pub(super) fn symmetric(of: &[Lanes; 6], k: usize) -> [f64; 6] {
-    [of[0][k], of[1][k], of[2][k], of[3][k], of[4][k], of[5][k]]
+pub(super) fn held_strain(point: &PointBatch, k: usize, frame: &[f64; 9]) -> [f64; 6] {
+    let e = &point.elastic_strain;
+    conjugate(
+        frame,
+        &[e[0][k], e[1][k], e[2][k], e[3][k], e[4][k], e[5][k]],
+    )
+}
+
+/// Sets that of lane k.
+#[inline(always)]
+pub(super) fn hold_strain(point: &mut PointBatch, k: usize, frame: &[f64; 9], strain: &[f64; 6]) {
+    let strain = conjugate(&transposed(frame), strain);
+    for c in 0..6 {
+        point.elastic_strain[c][k] = strain[c];
+    }
 }
 
 /// Share of the volume of lane k that matter has, the rest being open cracks.
@@ -350,14 +363,15 @@ impl Law for Orthotropic {
             if dt != 0.0 {
                 strain(point, k, dt);
             }
-            let strain = symmetric(&point.elastic_strain, k);
+            let axes = frame(point, k);
+            let strain = held_strain(point, k, &axes);
             let share = solid_share(point, k);
             let mut stress = now.stiffness.stress(&strain);
             for component in &mut stress {
                 *component *= share;
             }
             if dt != 0.0 {
-                bear(point, k, &frame(point, k), &stress);
+                bear(point, k, &axes, &stress);
             }
             point.pressure[k] -= (stress[0] + stress[1] + stress[2]) * (1.0 / 3.0);
             now.shear_modulus[k] *= share;
@@ -381,7 +395,8 @@ impl Orthotropic {
             if point.pressure[k] <= 0.0 {
                 continue;
             }
-            let strain = symmetric(&point.elastic_strain, k);
+            let axes = frame(point, k);
+            let mut strain = held_strain(point, k, &axes);
             let stress = now.stiffness.stress(&strain);
             let square = equivalent_squared(&stress);
             if square <= self.crush_stress * self.crush_stress || point.damage[k] >= FAILED {
@@ -400,10 +415,11 @@ impl Orthotropic {
                 let increment = (1.0 - kept) * flow[c];
                 let twice = if c < 3 { 1.0 } else { 2.0 };
                 work += twice * kept * deviator[c] * increment;
-                point.elastic_strain[c][k] -= increment;
+                strain[c] -= increment;
                 point.deviatoric_stress[c][k] *= kept;
             }
-            let left = now.stiffness.stress(&symmetric(&point.elastic_strain, k));
+            hold_strain(point, k, &axes, &strain);
+            let left = now.stiffness.stress(&strain);
             let rest = (left[0] + left[1] + left[2]) * (1.0 / 3.0);
             point.pressure[k] += solid_share(point, k) * (mean - rest);
             point.plastic_strain[k] += work / self.crush_stress;
@@ -430,17 +446,19 @@ fn strain(point: &mut PointBatch, k: usize, dt: f64) {
         0.5 * half * (l(5) + l(7)),
     ];
     let before = frame(point, k);
+    let mut strain = held_strain(point, k, &before);
     let mut gradient = [0.0; 9];
     for (c, component) in gradient.iter_mut().enumerate() {
         *component = point.velocity_gradient[c][k];
     }
     carry(point, k, &before, &increment(&gradient, half));
-    let first = conjugate(&before, &rate);
-    let second = conjugate(&frame(point, k), &rate);
     if point.damage[k] >= FAILED {
         return;
     }
+    let after = frame(point, k);
+    let (first, second) = (conjugate(&before, &rate), conjugate(&after, &rate));
     for c in 0..6 {
-        point.elastic_strain[c][k] += first[c] + second[c];
+        strain[c] += first[c] + second[c];
     }
+    hold_strain(point, k, &after, &strain);
 }
