@@ -5,7 +5,7 @@ use engine::step::{RigidState, Simulation};
 use numerics::attitude::rotation;
 use numerics::vector::{dot, minus, norm};
 
-/// A case of a soft material, of a spacing (mm) and a bulk modulus (MPa), with gravity downwards or none, and what else it
+/// A case of a soft material, of a spacing and a bulk modulus (mm, `MPa`), with gravity downwards or none, and what else it
 /// has.
 fn case((dimension, spacing): (usize, f64), modulus: f64, falls: bool, rest: &str) -> Simulation {
     let gravity = format!("gravity = [{}\"-10 m/s^2\"]", "0, ".repeat(dimension - 1));
