@@ -541,6 +541,11 @@ mod tests {
                 if brittle && material.strength.shear_modulus() == 0.0 {
                     continue;
                 }
+                let other =
+                    failure.spall.is_some() || failure.options.effect != Effect::StrengthLost;
+                if material.has_directions() && other {
+                    continue; // A case cannot say that.
+                }
                 material.failure = failure;
                 let mut point = loaded(material.reference_density);
                 let before = values(&point);

@@ -250,6 +250,8 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         Some("`riedel_hiermaier_thoma` damages the strength of that name alone")
     } else if failure.hashin.is_some() && !matches!(strength, Strength::Orthotropic(_)) {
         Some("`hashin` cracks matter of the strength `orthotropic` alone")
+    } else if matches!(strength, Strength::Orthotropic(_)) && failure.spall.is_some() {
+        Some("`spall` knows no directions: the strengths of `hashin` tell the largest tension")
     } else if matches!(strength, Strength::Orthotropic(_))
         && failure.options.effect != Effect::StrengthLost
     {
