@@ -29,15 +29,16 @@ pub struct Layup {
 impl Layup {
     /// Turn (rad) of the layer at a height (m).
     fn at(&self, height: f64) -> f64 {
+        #[allow(clippy::cast_precision_loss, reason = "few layers")]
         let count = self.angles.len() as f64;
         let layer = (height / self.ply).floor();
-        let place = layer - count * (layer / count).floor();
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "a place in the list"
         )]
-        let place = (place as usize).min(self.angles.len() - 1);
+        let place = (layer - count * (layer / count).floor()) as usize;
+        let place = place.min(self.angles.len() - 1);
         self.angles[place]
     }
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::physics_support::{inline, run_with, start};
 use engine::step::Simulation;
 
-/// Moduli `C_11`, `C_22`, `C_33` (GPa) of the lamina below, by inversion of its compliances.
+/// Moduli `C_11`, `C_22`, `C_33` (1e9 Pa) of the lamina below, by inversion of its compliances.
 const STRETCH: [f64; 3] = [142.5779, 12.4038, 11.1364];
 
 /// Speed (m/s) of a step of velocity along x between two times (s), by where half of it is.

@@ -149,6 +149,16 @@ fn over(stress: f64, strength: f64) -> f64 {
     }
 }
 
+/// Of shears over their strengths across direction i, the one that counts by itself.
+#[inline(always)]
+fn largest_shear(i: usize, [first, second]: [f64; 2]) -> f64 {
+    match i {
+        0 => 0.0,
+        1 => first,
+        _ => at_least(first, second),
+    }
+}
+
 impl Hashin {
     /// How near to their strengths tractions (Pa) across direction i are: `⟨σ_i⟩` and those of shear.
     fn progress(&self, i: usize, normal: f64, stress: &[f64; 6]) -> f64 {
@@ -161,16 +171,7 @@ impl Hashin {
         ];
         match self.criterion {
             Criterion::Hashin => (pull * pull + shear[0] * shear[0] + shear[1] * shear[1]).sqrt(),
-            Criterion::MaximumStress => at_least(pull, self.largest_shear(i, shear)),
-        }
-    }
-
-    /// The one that counts for direction i by itself.
-    fn largest_shear(&self, i: usize, [first, second]: [f64; 2]) -> f64 {
-        match i {
-            0 => 0.0,
-            1 => first,
-            _ => at_least(first, second),
+            Criterion::MaximumStress => at_least(pull, largest_shear(i, shear)),
         }
     }
 
