@@ -299,18 +299,10 @@ impl Law for Hashin {
         "delamination",
     ];
     const FOLLOWS_STATE: bool = true;
-    const HAS_ONSET: bool = false;
     const ASKS_IDENTITY: bool = true;
 
     #[inline(always)]
     fn fail(&self, point: &mut PointBatch, now: &Conditions) {
-        if !now.options.softens() {
-            self.damage(point, now);
-        }
-    }
-
-    #[inline(always)]
-    fn open(&self, point: &mut PointBatch, now: &Conditions) {
         self.damage(point, now);
     }
 }

@@ -26,7 +26,7 @@ use super::jaumann::conjugate;
 use super::neo_hookean::increment;
 use super::{Conditions, Contradiction, FAILED, LANES, Law, PointBatch};
 use crate::at_least;
-use numerics::vector::dot;
+use numerics::vector::{cross, dot};
 
 law! {
     /// Orthotropic elasticity with the pressure of the equation of state.
@@ -239,16 +239,6 @@ fn carry(point: &mut PointBatch, k: usize, from: &[f64; 9], f: &[f64; 9]) {
         point.fibre[i][k] = a[i];
         point.normal[i][k] = c[i] - off * a[i];
     }
-}
-
-/// `a × b`.
-#[inline(always)]
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// Elastic strain of lane k in its `frame`.

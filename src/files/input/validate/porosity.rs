@@ -108,6 +108,11 @@ pub fn porosity(
     let damage = params.damage.as_ref().map(|word| *word.get_ref());
     pores.strength = strength.or(base.map(|b| b.strength)).unwrap_or_default();
     pores.damage = damage.or(base.map(|b| b.damage)).unwrap_or_default();
+    let directed = matches!(matrix.strength, Strength::Orthotropic(_));
+    if directed && (matrix.failure.hashin.is_some() || pores.strength == StrengthOf::Matrix) {
+        let title = "matter with directions of its own has pores only without `hashin`, and the strength of the whole";
+        return Err(Diagnostic::new(at, title));
+    }
     if pores.strength == StrengthOf::Matrix
         && matches!(
             matrix.strength,
