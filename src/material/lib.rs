@@ -486,6 +486,12 @@ impl Material {
         response.pressure
     }
 
+    /// True if plastic strain tells where it has given way: what has directions cracks without any.
+    #[must_use]
+    pub fn shows_flow(&self) -> bool {
+        self.strength.yields() && !self.has_directions()
+    }
+
     /// True if it has directions of its own.
     #[must_use]
     pub fn has_directions(&self) -> bool {

@@ -167,7 +167,7 @@ impl Motion {
         let material = &matter.case.materials[matter.case.bodies[slab.body].material];
         let still = STILL * NumericalLimits::natural_speed(matter.case);
         let wave = material.reference_density * material.longitudinal_speed() * still;
-        let has_flowed = material.strength.yields() && remains.attached().is_some();
+        let has_flowed = material.shows_flow() && remains.attached().is_some();
         let rests = !has_flowed && faster + slower <= still && pressure <= wave;
         if !(energy > 0.0 && material.strength.yields()) {
             return Self {

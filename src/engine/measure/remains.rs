@@ -193,13 +193,13 @@ fn place(frame: &Frame, matter: &Matter, i: usize, mirror_mask: MirrorMask) -> [
 }
 
 /// Reach (m) of flowed material of the body between its faces, along the axes of the frame and
-/// against them; −∞ if none has flowed. Of a body that cannot yield all has flowed. Collective.
+/// against them; −∞ if none has flowed. Of a body whose plastic strain does not show it all has flowed. Collective.
 fn flowed(slab: &Slab, frame: &Frame, halves: &Halves, matter: &Matter, comm: &Comm) -> [f64; 6] {
     let material = matter.case.bodies[slab.body].material;
-    let yields = matter.case.materials[material].strength.yields();
+    let shows_flow = matter.case.materials[material].shows_flow();
     let (low, high) = (slab.rear - slab.spacing, slab.front + slab.spacing);
     let mut reach = matter.largest::<6>(comm, |i, most| {
-        let flowed = !yields || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
+        let flowed = !shows_flow || matter.plastic_strain[i] >= FLOWED || matter.has_failed(i);
         if matter.body_of(i) != slab.body || !flowed {
             return;
         }
