@@ -6,7 +6,7 @@ use crate::common::random::Random;
 use crate::common::virtual_ranks::on_each;
 use crate::physics_support::{inline, run_to, run_with, start};
 use comm::Comm;
-use engine::step::Simulation;
+use engine::step::{Simulation, Tear};
 use model::Vec3;
 use numerics::vector::cross;
 
@@ -196,6 +196,29 @@ fn what_meets_itself_leaves() {
     });
     println!("closest {closest}");
     assert_eq!(s.state.total, [false]);
+}
+
+/// A tool that ploughs a block shears its particles past each other: the block leaves the form before its time steps collapse.
+#[test]
+fn what_is_ploughed_leaves() {
+    let text = "dimension = 2\nspacing = \"0.5 mm\"\n[run]\nend_time = \"120 us\"\n".to_owned()
+        + METAL
+        + "[[body]]\nname = \"block\"\nmaterial = \"metal\"\n\
+           shape.box = { lower = [0, \"-8 mm\"], upper = [\"40 mm\", 0] }\n\
+           [[body]]\nname = \"tool\"\nmaterial = \"metal\"\nrigid = true\nvelocity = [\"200 m/s\", 0]\n\
+           shape.sphere = { centre = [\"-4.5 mm\", \"2 mm\"], radius = \"4 mm\" }\n\
+           [[plane]]\nnormal = \"+y\"\npoint = [0, \"-8 mm\"]\n\
+           [contact]\nmode = \"overlap\"\nfriction = 0.3\n";
+    let mut s = start(inline(&text));
+    assert!(s.case.bodies[0].total);
+    let (mut first, mut least) = (0.0, f64::INFINITY);
+    run_with(&mut s, 30e-6, |s| {
+        first = if first == 0.0 { s.state.dt } else { first };
+        least = s.state.dt.min(least);
+    });
+    println!("{:?}, steps {first:e} to {least:e}", s.state.torn);
+    assert!(s.state.torn.iter().any(|torn| torn.tear == Tear::Slip));
+    assert!(least > 0.1 * first);
 }
 
 /// The default by speed, and what cannot have the form.

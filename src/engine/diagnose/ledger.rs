@@ -187,6 +187,8 @@ pub enum Tear {
     Fold,
     /// A particle expands that limits tension.
     Void,
+    /// A particle has been strained more than its deformation gradient tells.
+    Slip,
     /// A particle has been turned inside out.
     Inversion,
     /// A particle has failed.
@@ -197,9 +199,10 @@ pub enum Tear {
 
 impl Tear {
     /// All reasons, by their words.
-    pub(crate) const ALL: [Self; 5] = [
+    pub(crate) const ALL: [Self; 6] = [
         Self::Fold,
         Self::Void,
+        Self::Slip,
         Self::Inversion,
         Self::Failure,
         Self::Removal,

@@ -25,7 +25,7 @@ mod timers;
 pub use crate::diagnose::failed_mass;
 pub use crate::diagnose::{
     LoadState, NearestPair, NumericalFailure, PairState, Passed, PastStep, PostMortem, Reason,
-    Removed, RunState, Totals, Worst,
+    Removed, RunState, Tear, Totals, Worst,
 };
 pub use crate::loads::RigidState;
 pub use candidate::StepControl;

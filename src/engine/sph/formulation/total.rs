@@ -41,6 +41,10 @@ const LEAST_CHANGE: f64 = 1e-12;
 /// Expansion at which what limits tension has torn.
 const TORN: f64 = 1.1;
 
+/// Plastic strain beyond which a particle has to have deformed accordingly: flow along a line strains by ⅔ of the logarithm of
+/// the largest stretch over the smallest, simple shear by as much as that at a shear of 6.5, and what moves to and fro by more.
+const SLIPS: f64 = 1.0;
+
 /// Distance over twice the smoothing length beyond which particles of a body are strangers. Nearer ones roll over each
 /// other at the rim of a foot, and their neighbours keep them apart.
 const FAR: f64 = 3.0;
@@ -604,9 +608,16 @@ impl Show for ShowTotal<'_> {
             let sound_speed = after.sound_speed[k];
             let state = [after.density[k], sound_speed, viscous_speed, 1.0];
             let expands = total.determinant.0[k];
+            let mut deformation = [0.0; 9];
+            for c in 0..9 {
+                deformation[c] = total.deformation[c].0[k];
+            }
+            let plastic = after.plastic_strain[k];
+            let slips = plastic > SLIPS && plastic > log_ratio(&deformation, total.squeeze.0[k]);
             let torn = [
                 (Tear::Failure, after.damage[k] >= FAILED),
                 (Tear::Inversion, expands <= LEAST_DETERMINANT),
+                (Tear::Slip, slips),
                 (Tear::Void, points.limits_tension && expands > TORN),
             ];
             for (tear, is_so) in torn {
@@ -621,7 +632,7 @@ impl Show for ShowTotal<'_> {
             let alpha = 0.6 * target.alpha;
             let speed = (1.0 + alpha * total.limiter.linear.0[k]) / (1.0 + alpha);
             let yields = points.yield_stress;
-            let flow = 3.0 * points.shear_modulus * after.plastic_strain[k];
+            let flow = 3.0 * points.shear_modulus * plastic;
             let share = if flow > 0.0 && yields.is_finite() {
                 yields / (yields + flow)
             } else {
@@ -629,10 +640,6 @@ impl Show for ShowTotal<'_> {
             };
             let wave_modulus = after.density[k] * after.sound_speed[k] * after.sound_speed[k];
             let modulus = 0.5 * target.stiffness * share * wave_modulus;
-            let mut deformation = [0.0; 9];
-            for c in 0..9 {
-                deformation[c] = total.deformation[c].0[k];
-            }
             let [x, y, z, _] = target.positions[index];
             // SAFETY: by the contract of this function.
             unsafe {
@@ -669,4 +676,10 @@ fn half(matrix: &[f64; 9]) -> [f64; 9] {
         *component *= 0.5;
     }
     half
+}
+
+/// Logarithm of the largest stretch of a deformation gradient over its smallest, given the inverse of that; up to ln √3 larger.
+fn log_ratio(deformation: &[f64; 9], squeeze: f64) -> f64 {
+    let square: f64 = deformation.iter().map(|c| c * c).sum();
+    libm::log(square.sqrt() * squeeze)
 }
