@@ -26,7 +26,8 @@ pub struct Attached {
     runs: Vec<Run>,
     /// Beginning of the runs of each column, and the end of those of the last.
     columns: Vec<usize>,
-    /// Columns that have not held the body at the start: beside its rim, and in holes that it is made with.
+    /// Columns that have not held the body at the start, beside its rim and in holes that it is made with, or that its rim
+    /// has left as it was drawn inwards.
     outside: Vec<bool>,
 }
 
@@ -78,6 +79,11 @@ impl Attached {
             begins.push(kept.len());
         }
         let images: Vec<usize> = window.images().collect();
+        let outside: Vec<bool> = images.iter().map(|&image| outside[image]).collect();
+        let empty = |column: usize| begins[images[column]] == begins[images[column] + 1];
+        let drawn_in = drawn_in([window.counts[0], window.counts[1]], &outside, empty);
+        let outside = outside.iter().zip(&drawn_in).map(|(a, b)| *a || *b);
+        let outside: Vec<bool> = outside.collect();
         let (mut runs, mut columns) = (Vec::new(), vec![0]);
         for &image in &images {
             runs.extend_from_slice(&kept[begins[image]..begins[image + 1]]);
@@ -96,7 +102,7 @@ impl Attached {
             fractions,
             runs: own,
             columns: begins,
-            outside: images.iter().map(|&image| outside[image]).collect(),
+            outside,
             images,
         }
     }
@@ -239,6 +245,23 @@ impl Attached {
     }
 }
 
+/// Columns that a probe of three by three reaches from outside the rim through empty ones: a rim that has been drawn inwards
+/// leaves them, and narrow cracks do not let it in.
+fn drawn_in(counts: [usize; 2], outside: &[bool], empty: impl Fn(usize) -> bool) -> Vec<bool> {
+    let [rows, across] = counts;
+    let around = |column: usize| {
+        let near = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+        let (i, j) = (column / across, column % across);
+        near(i, rows).flat_map(move |i| near(j, across).map(move |j| i * across + j))
+    };
+    let columns = 0..rows * across;
+    let free = |column: usize| outside[column] || empty(column);
+    let probe: Vec<bool> = columns.clone().map(|c| around(c).all(free)).collect();
+    let reached = Mask::new(counts, probe.clone()).at_border();
+    let reaches = |column: usize| probe[column] && reached[column];
+    columns.map(|c| free(c) && around(c).any(reaches)).collect()
+}
+
 /// The first run of the piece that each run belongs to.
 fn roots(window: &Window, runs: &[Run], columns: &[usize]) -> Vec<u32> {
     let mut sets = Sets::default();
@@ -323,6 +346,28 @@ mod tests {
         assert_eq!(ends[0], Some([3.0, 5.0]));
         assert_eq!(ends[11], Some([3.0, 6.0]));
         assert_eq!(ends[33], None);
+    }
+
+    /// A plate of twenty by twelve, drawn in by two at its left rim and cracked from there to a hole in its middle.
+    #[test]
+    fn a_rim_that_is_drawn_in_is_no_hole() {
+        let was = |i: usize, j: usize| (4..24).contains(&i) && (4..16).contains(&j);
+        let hole = |i: usize, j: usize| (12..17).contains(&i) && (7..12).contains(&j);
+        let crack = |i: usize, j: usize| i < 12 && j == 9;
+        let drawn = |i: usize, j: usize| i < 6 && (7..13).contains(&j);
+        let window = Window::new([0.0; 3], [28.0, 20.0, 4.0], 1.0, [None; 2]);
+        let fractions = (0..28 * 20 * 4).map(|v| {
+            let (i, j, k) = (v / 80, v / 4 % 20, v % 4);
+            let is = was(i, j) && !hole(i, j) && !crack(i, j) && !drawn(i, j);
+            if is && (1..3).contains(&k) { UNIT } else { 0 }
+        });
+        let outside: Vec<bool> = (0..560).map(|c| !was(c / 20, c % 20)).collect();
+        let all = Attached::new(window, fractions.collect(), &outside);
+        assert!(all.is_open());
+        let inside = all.open().largest_inside();
+        // The hole with its crack, and nothing of the rim.
+        assert_eq!(inside.count(), 25 + 6);
+        assert_eq!(all.open().inside().largest_disc(), 25);
     }
 
     #[test]
