@@ -4,6 +4,8 @@ mod content;
 mod tables;
 mod text;
 
+pub(super) use text::cases;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -159,6 +161,22 @@ fn case(a: &str, b: &str, report: &mut Report) {
 
 fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), ResultsError> {
     case(&read(&a.case())?, &read(&b.case())?, report);
+    tables_and_states(a, b, true, report)?;
+    // Cases alone are no results.
+    if report.compared == 1 {
+        report.compared = 0;
+    }
+    Ok(())
+}
+
+/// Compares the tables, snapshots and checkpoints that two runs have of the same steps; columns with extremes since the row
+/// before only if `rows_are_same`.
+pub(super) fn tables_and_states(
+    a: &RunFolder,
+    b: &RunFolder,
+    rows_are_same: bool,
+    report: &mut Report,
+) -> Result<(), ResultsError> {
     let names = |folder: &RunFolder| tables::names(folder.path());
     for name in in_both(&names(a)?, &names(b)?, report) {
         let of_part = match [a, b].map(|run| run.note_of_part(&name)) {
@@ -171,10 +189,10 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
             continue;
         }
         let (a, b) = (a.path().join(&name), b.path().join(&name));
-        tables::compare(&name, &read(&a)?, &read(&b)?, report);
+        tables::compare(&name, &read(&a)?, &read(&b)?, rows_are_same, report);
     }
     if let (Some(a), Some(b)) = (records(a)?, records(b)?) {
-        tables::compare("gauges", &a, &b, report);
+        tables::compare("gauges", &a, &b, rows_are_same, report);
     }
     let names = |folder: &RunFolder| -> Result<BTreeSet<String>, ResultsError> {
         let unscheduled = folder.snapshot_files()?;
@@ -202,10 +220,6 @@ fn runs(a: &RunFolder, b: &RunFolder, report: &mut Report) -> Result<(), Results
         };
         let what = format!("checkpoint {name}");
         content::checkpoints(&open(a)?, &open(b)?, &what, report)?;
-    }
-    // Cases alone are no results.
-    if report.compared == 1 {
-        report.compared = 0;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod check;
 pub mod compare;
+mod diff;
 mod export;
 pub mod fragments;
 mod generate;
@@ -14,6 +15,7 @@ mod new;
 mod output_format;
 mod plan;
 pub mod plot;
+mod replay;
 mod report;
 mod restart;
 pub mod results;
@@ -22,6 +24,7 @@ mod shell;
 mod sweep;
 mod version;
 mod watch;
+mod when;
 pub mod which;
 
 use std::ffi::OsString;
@@ -52,6 +55,8 @@ use model::readable::is_printable;
   whipple measure runs/quarter
   whipple report runs/quarter
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
+  whipple replay runs/quarter --from 50ns --to 60ns --snapshot-every 1ns
+  whipple when \"failed plate\" runs/quarter
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
   whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
 
@@ -59,7 +64,7 @@ For work on the program itself: `whipple compare` tells whether two results
 agree to the last bit, `whipple bench` measures how fast it steps here.
 
 `whipple COMMAND --help` says more, `whipple --version` which MPI and HDF5 it
-runs with. Only `run`, `restart` and `bench` use MPI. Exit codes: 0 done,
+runs with. Only `run`, `restart`, `replay`, `when`, `diff` and `bench` use MPI. Exit codes: 0 done,
 1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with
 a checkpoint."
 )]
@@ -73,6 +78,9 @@ enum Command {
     New(new::NewArgs),
     Run(run::RunArgs),
     Restart(restart::RestartArgs),
+    Replay(replay::ReplayArgs),
+    When(when::WhenArgs),
+    Diff(diff::DiffArgs),
     Check(check::CheckArgs),
     Plan(plan::PlanArgs),
     Plot(Box<plot::PlotArgs>),
@@ -93,6 +101,16 @@ enum Command {
     Bench(bench::BenchArgs),
 }
 
+impl Command {
+    /// True of what runs a case itself, on the ranks of its job.
+    fn has_ranks(&self) -> bool {
+        matches!(
+            self,
+            Self::Run(_) | Self::Restart(_) | Self::Replay(_) | Self::When(_) | Self::Diff(_)
+        )
+    }
+}
+
 /// Runs the program, built from `commit`: its command line, its exit code.
 #[must_use]
 pub fn main(commit: &'static str) -> ExitCode {
@@ -108,21 +126,21 @@ pub fn main(commit: &'static str) -> ExitCode {
             return ExitCode::from(say::exit_code(code));
         }
     };
-    if !matches!(cli.command, Command::Run(_) | Command::Restart(_)) {
+    if !cli.command.has_ranks() {
         end_with_the_pipe();
         exit_on_panic();
     }
     // The others start their own threads.
-    if !matches!(
-        cli.command,
-        Command::Run(_) | Command::Restart(_) | Command::Bench(_)
-    ) {
+    if !cli.command.has_ranks() && !matches!(cli.command, Command::Bench(_)) {
         launch::bound_threads();
     }
     let code = match cli.command {
         Command::New(args) => new::run(&args),
         Command::Run(args) => run::run(&args),
         Command::Restart(args) => restart::run(&args),
+        Command::Replay(args) => replay::run(&args),
+        Command::When(args) => when::run(&args),
+        Command::Diff(args) => diff::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Plot(args) => plot::run(&args).map_or_else(

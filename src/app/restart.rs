@@ -29,64 +29,67 @@ use particles::ParticleStore;
 pub struct RestartArgs {
     /// Run folder (its newest whole checkpoint is taken), or one checkpoint's folder
     #[arg(value_name = "RUN_OR_CHECKPOINT")]
-    from: PathBuf,
+    pub(super) from: PathBuf,
 
     /// Folder of the results [default: the run's own]
     #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
 
     /// Change a value of `run`, `output`, `domain` or `numerical_limits`, as in `run.end_time=0.3us`; may be
     /// given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
 
     /// Go on with the run's case.toml where it was edited, in `run`, `output`, `domain` or
     /// `numerical_limits`
     #[arg(long)]
-    accept_case: bool,
+    pub(super) accept_case: bool,
 
     /// Refuse to go on if results that the checkpoint stands on are lost or changed
     #[arg(long)]
-    strict: bool,
+    pub(super) strict: bool,
 
     #[command(flatten)]
-    common: CommonArgs,
+    pub(super) common: CommonArgs,
 
     /// Replace an earlier run in the folder that --out names
     #[arg(short, long)]
-    force: bool,
+    pub(super) force: bool,
 }
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RestartArgs) -> u8 {
     args.common.verbosity().begin();
-    with_ranks(|launch| {
-        let comm = launch.comm;
-        if let Err(error) = same_options(comm, args) {
-            return warn(comm, &format!("error: {error}"));
-        }
-        if let Err(error) = input::output_and_run_only(&args.set) {
-            return warn(comm, &error.to_string());
-        }
-        let refused = |error: OutputError| warn(comm, &format!("error: {error}"));
-        let mut named = match locate(comm, args) {
-            Ok(named) => named,
-            Err(error) => return refused(error),
-        };
-        // Held to the end: nobody else may change what is read.
-        let warnings = match named.take(comm, args) {
-            Ok(warnings) => warnings,
-            Err(error) => return refused(error),
-        };
-        let listed = find(comm, &named).map_err(|error| refusal(&error));
-        let loaded = listed.and_then(|(paths, passed_over)| {
-            // The store of particles has work for them as soon as a checkpoint is read.
-            launch.start_threads(args.common.threads);
-            read(comm, &args.from, named, paths, passed_over)
-        });
-        let ended = loaded.and_then(|loaded| resume(launch, args, loaded, warnings));
-        ended.unwrap_or_else(|message| warn(comm, &message))
-    })
+    with_ranks(|launch| go(launch, args))
+}
+
+/// Goes on on ranks that have started; returns the exit code. Collective.
+pub(super) fn go(launch: &Launch, args: &RestartArgs) -> u8 {
+    let comm = launch.comm;
+    if let Err(error) = same_options(comm, args) {
+        return warn(comm, &format!("error: {error}"));
+    }
+    if let Err(error) = input::output_and_run_only(&args.set) {
+        return warn(comm, &error.to_string());
+    }
+    let refused = |error: OutputError| warn(comm, &format!("error: {error}"));
+    let mut named = match locate(comm, args) {
+        Ok(named) => named,
+        Err(error) => return refused(error),
+    };
+    // Held to the end: nobody else may change what is read.
+    let warnings = match named.take(comm, args) {
+        Ok(warnings) => warnings,
+        Err(error) => return refused(error),
+    };
+    let listed = find(comm, &named).map_err(|error| refusal(&error));
+    let loaded = listed.and_then(|(paths, passed_over)| {
+        // The store of particles has work for them as soon as a checkpoint is read.
+        launch.start_threads(args.common.threads);
+        read(comm, &args.from, named, paths, passed_over)
+    });
+    let ended = loaded.and_then(|loaded| resume(launch, args, loaded, warnings));
+    ended.unwrap_or_else(|message| warn(comm, &message))
 }
 
 /// The paths that the command line names.

@@ -6,7 +6,7 @@ use comm::Comm;
 use files::input;
 use files::output::{RunFolder, snapshot};
 use files::run::CommonArgs;
-use files::run::launch::{same_case, same_options, warn, with_ranks};
+use files::run::launch::{Launch, same_case, same_options, warn, with_ranks};
 use files::run::start::start;
 
 /// Run a case from its start
@@ -28,54 +28,57 @@ reached; 1 failed; 2 wrong input.")]
 pub struct RunArgs {
     /// Case file (TOML), or a folder with a case.toml
     #[arg(value_name = "CASE")]
-    case: PathBuf,
+    pub(super) case: PathBuf,
 
     /// Folder of the results [default: runs/NAME, after the case's folder or file]
     #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
 
     /// Change a value of the case, as in spacing=0.015mm; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub(super) set: Vec<String>,
 
     #[command(flatten)]
-    common: CommonArgs,
+    pub(super) common: CommonArgs,
 
     /// Replace an earlier run in the folder of the results
     #[arg(short, long)]
-    force: bool,
+    pub(super) force: bool,
 }
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &RunArgs) -> u8 {
     args.common.verbosity().begin();
-    with_ranks(|launch| {
-        let comm = launch.comm;
-        if let Err(error) = same_options(comm, args) {
-            return warn(comm, &format!("error: {error}"));
-        }
-        let (path, text) = match read_case(comm, &args.case) {
-            Ok(read) => read,
-            Err(message) => return warn(comm, &message),
-        };
-        let read = input::parse(&path.display().to_string(), &text, &args.set);
-        let case = match same_case(comm, read) {
-            Ok(case) => case,
-            Err(error) => return warn(comm, &error.to_string()),
-        };
-        if let Err(error) = snapshot::quantities(&case.output.fields) {
-            return warn(comm, &format!("error: {error}"));
-        }
-        if let Some(message) = args.common.shortage(comm, &case) {
-            return warn(comm, &message);
-        }
-        let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
-        let mut folder = RunFolder::at(&out);
-        match folder.take_new(comm, args.force, args.common.ignore_lock) {
-            Ok(more) => start(launch, &args.common, case, folder, args.force, more),
-            Err(error) => warn(comm, &format!("error: {error}")),
-        }
-    })
+    with_ranks(|launch| go(launch, args))
+}
+
+/// Runs a case on ranks that have started; returns the exit code. Collective.
+pub(super) fn go(launch: &Launch, args: &RunArgs) -> u8 {
+    let comm = launch.comm;
+    if let Err(error) = same_options(comm, args) {
+        return warn(comm, &format!("error: {error}"));
+    }
+    let (path, text) = match read_case(comm, &args.case) {
+        Ok(read) => read,
+        Err(message) => return warn(comm, &message),
+    };
+    let read = input::parse(&path.display().to_string(), &text, &args.set);
+    let case = match same_case(comm, read) {
+        Ok(case) => case,
+        Err(error) => return warn(comm, &error.to_string()),
+    };
+    if let Err(error) = snapshot::quantities(&case.output.fields) {
+        return warn(comm, &format!("error: {error}"));
+    }
+    if let Some(message) = args.common.shortage(comm, &case) {
+        return warn(comm, &message);
+    }
+    let out = args.out.clone().unwrap_or_else(|| default_folder(&path));
+    let mut folder = RunFolder::at(&out);
+    match folder.take_new(comm, args.force, args.common.ignore_lock) {
+        Ok(more) => start(launch, &args.common, case, folder, args.force, more),
+        Err(error) => warn(comm, &format!("error: {error}")),
+    }
 }
 
 /// The case file and its text, read by rank 0 for all.

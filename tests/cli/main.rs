@@ -36,6 +36,7 @@ mod pages;
 mod plan;
 mod python;
 mod python_package;
+mod replay;
 mod report;
 mod restart;
 mod run;

@@ -71,6 +71,44 @@ pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
     Ok(answers)
 }
 
+/// Answers of a table at a time (s).
+#[derive(Debug)]
+pub struct Row {
+    /// The time.
+    pub time: f64,
+    /// The answers.
+    pub answers: Answers,
+}
+
+/// The answers of a table of a run, `history` or `measures`, at each of its times.
+///
+/// # Errors
+/// [`OutputError`] if there is no such table, or it cannot be read.
+pub fn rows_of(folder: &RunFolder, table: &str) -> Result<Vec<Row>, OutputError> {
+    let path = folder.path().join(table).with_extension("csv");
+    let text = text(&path)?;
+    let damaged = |reason: String| OutputError::damaged(&path, reason);
+    let mut sheet = Sheet::parse(&text).map_err(damaged)?.widened();
+    let time = sheet.names.iter().position(|name| name == "time");
+    let time = time.ok_or_else(|| damaged("it has no times".to_owned()))?;
+    let all = std::mem::take(&mut sheet.rows);
+    let mut rows: Vec<Row> = Vec::new();
+    for of_time in all.chunk_by(|(_, a), (_, b)| a.get(time) == b.get(time)) {
+        let value = of_time[0].1.get(time).and_then(|time| time.parse().ok());
+        let Some(value) = value else {
+            continue;
+        };
+        sheet.rows = of_time.to_vec();
+        let mut answers = Answers::new();
+        add_rows(&mut answers, table, &sheet);
+        rows.push(Row {
+            time: value,
+            answers,
+        });
+    }
+    Ok(rows)
+}
+
 /// `true` if an answer is asked for, by its whole name, or if nothing is and it is one of the
 /// default ones.
 #[must_use]

@@ -80,6 +80,31 @@ impl Condition {
         }))
     }
 
+    /// The table of the answer.
+    #[must_use]
+    pub fn table(&self) -> &str {
+        match self {
+            Self::Compares(comparison) => {
+                let table = comparison.name.split('.').next();
+                table.unwrap_or_default()
+            }
+            Self::Failed(_) => "measures",
+        }
+    }
+
+    /// `true` if there is no such answer.
+    #[must_use]
+    pub fn is_unknown(&self, answers: &Answers) -> bool {
+        match self {
+            Self::Compares(comparison) => !answers.contains_key(&comparison.name),
+            Self::Failed(name) => !answers.keys().any(|answer| {
+                let plate = answer.strip_suffix(".verdict");
+                let plate = plate.and_then(|answer| answer.strip_prefix("measures."));
+                plate.is_some_and(|plate| name.as_deref().is_none_or(|name| name == plate))
+            }),
+        }
+    }
+
     /// `true` if it holds.
     ///
     /// # Errors

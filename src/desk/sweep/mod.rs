@@ -22,7 +22,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+pub use answers::{Answers, Row, rows_of};
 pub use chart::draw;
+pub use condition::Condition;
 pub use converge::Converged;
 pub use definition::Definition;
 pub use plan::WITHIN;

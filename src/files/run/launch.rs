@@ -1,5 +1,6 @@
 //! The ranks of a command: started together, and ended together with one message.
 
+use std::sync::Once;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Instant, SystemTime};
 
@@ -35,9 +36,10 @@ pub struct Launch<'a> {
 }
 
 impl Launch<'_> {
-    /// Starts the threads of this rank.
+    /// Starts the threads of this rank, once for all parts of a command.
     pub fn start_threads(&self, wanted: Option<u16>) {
-        start_threads(self.comm, wanted.map(usize::from));
+        static STARTED: Once = Once::new();
+        STARTED.call_once(|| start_threads(self.comm, wanted.map(usize::from)));
     }
 }
 

@@ -26,3 +26,4 @@ pub mod verbosity;
 mod watched;
 
 pub use options::CommonArgs;
+pub use stop::parse_until;

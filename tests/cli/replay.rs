@@ -1,0 +1,155 @@
+//! Parts of runs that are computed again: the same bits, more output, the step of a condition, the first difference.
+
+use std::path::Path;
+
+use crate::program::{WHIPPLE, coarse_run, command, end, ranks, status};
+
+fn names(folder: &Path) -> usize {
+    std::fs::read_dir(folder).unwrap().count()
+}
+
+/// Any ranks compute a part of a run with its bits, and more snapshots and fields.
+#[test]
+fn a_part_is_the_same_on_any_ranks() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    end(&mut coarse_run(2, &run)).with_code(0);
+    for (number, out) in [(1, "one"), (3, "three")] {
+        let out = place.path().join(out);
+        let mut again = ranks(number);
+        again.arg("replay").arg(&run).arg("--out").arg(&out);
+        again.args([
+            "--from",
+            "0.1us",
+            "--to",
+            "0.12us",
+            "--snapshot-every",
+            "2ns",
+        ]);
+        again.args(["--field", "von_mises_stress", "--rows-every", "1"]);
+        let ended = end(&mut again).with_code(0);
+        assert!(ended.stdout.contains("to the last bit"), "{ended:#?}");
+        assert!(names(&out.join("snapshots")) > 5, "{ended:#?}");
+        assert!(status(&out).1 < status(&run).1);
+    }
+    let one = std::fs::read(place.path().join("one/history.csv")).unwrap();
+    let three = std::fs::read(place.path().join("three/history.csv")).unwrap();
+    assert_eq!(one, three);
+
+    // From its start, where no checkpoint is old enough; of a run that is not this one.
+    let history = run.join("history.csv");
+    let text = std::fs::read_to_string(&history).unwrap();
+    let line = text.lines().nth(5).unwrap();
+    let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+    cells[4] = format!("{}1", cells[4]);
+    std::fs::write(&history, text.replace(line, &cells.join(","))).unwrap();
+    let mut again = ranks(1);
+    again
+        .arg("replay")
+        .arg(&run)
+        .args(["--to", "20ns", "--out"]);
+    let ended = end(again.arg(place.path().join("first"))).with_code(1);
+    assert!(
+        ended.stdout.contains("kinetic_energy: 1 rows differ"),
+        "{ended:#?}"
+    );
+    assert!(
+        ended.stdout.contains("this is not the run in"),
+        "{ended:#?}"
+    );
+}
+
+/// The first step at which a condition holds is that of a run with rows at each step.
+#[test]
+fn the_first_step_of_a_condition_is_found() {
+    let place = tempfile::tempdir().unwrap();
+    let [run, each, out] = ["run", "each", "out"].map(|name| place.path().join(name));
+    let rows = |every: &str| format!("output.history_every={every}");
+    end(coarse_run(1, &run).args(["--set", &rows("20")])).with_code(0);
+    end(coarse_run(2, &each).args(["--set", &rows("1")])).with_code(0);
+    let text = std::fs::read_to_string(each.join("history.csv")).unwrap();
+    let cells = |line: &str, k: usize| line.split(',').nth(k).unwrap().parse::<f64>().unwrap();
+    let all: Vec<&str> = text.lines().skip(3).collect();
+    let limit = 0.5 * (cells(all[33], 4) + cells(all[34], 4));
+    let below = |line: &&str| cells(line, 4) < limit;
+    let expected = all.iter().position(|line| below(line)).unwrap();
+    assert_eq!(cells(all[expected], 0), expected as f64);
+
+    let mut when = ranks(2);
+    when.args(["when", &format!("history.kinetic_energy<{limit} J")]);
+    let ended = end(when.arg(&run).arg("--out").arg(&out)).with_code(0);
+    let told = format!("holds from step {expected} on");
+    assert!(ended.stdout.contains(&told), "{told}: {ended:#?}");
+    let folder = out.join("step");
+    assert_eq!(status(&folder).1, expected as u64);
+    assert!(folder.join("picture.png").is_file());
+
+    let mut never = command(WHIPPLE);
+    never.args(["when", "history.kinetic_energy<0 J"]).arg(&run);
+    let ended = end(&mut never).with_code(1);
+    assert!(ended.stdout.contains("holds at no row"), "{ended:#?}");
+    let mut unknown = command(WHIPPLE);
+    unknown.args(["when", "history.nothing<0 J"]).arg(&run);
+    let ended = end(&mut unknown).with_code(2);
+    assert!(
+        ended.stderr.contains("no answer `history.nothing`"),
+        "{ended:#?}"
+    );
+}
+
+/// Two runs with another spall limit part where the first particle fails, and the keys are told.
+#[test]
+fn the_first_difference_is_found() {
+    let place = tempfile::tempdir().unwrap();
+    let [a, b, out] = ["a", "b", "out"].map(|name| place.path().join(name));
+    end(&mut coarse_run(1, &a)).with_code(0);
+    let key = "material.aluminium.failure.spall.pressure";
+    end(coarse_run(2, &b).args(["--set", &format!("{key}=-1.25 GPa")])).with_code(0);
+    let mut diff = ranks(2);
+    let ended = end(diff.arg("diff").arg(&a).arg(&b).arg("--out").arg(&out)).with_code(1);
+    let lines: Vec<&str> = ended.stdout.lines().collect();
+    assert!(
+        lines
+            .iter()
+            .any(|line| line.starts_with(&format!("key {key}: "))),
+        "{ended:#?}"
+    );
+    let first = lines
+        .iter()
+        .find(|line| line.contains(" particles differ"))
+        .unwrap();
+    assert!(
+        first.contains(": 1 particles differ; first id "),
+        "{ended:#?}"
+    );
+    assert!(
+        ended.stdout.contains("the first step that differs is "),
+        "{ended:#?}"
+    );
+
+    let ended = end(command(WHIPPLE).arg("diff").arg(&a).arg(&a)).with_code(0);
+    assert!(
+        ended.stdout.contains("no row of the histories"),
+        "{ended:#?}"
+    );
+}
+
+/// Keys that move particles cannot change.
+#[test]
+fn what_moves_particles_is_refused() {
+    let place = tempfile::tempdir().unwrap();
+    let mut again = command(WHIPPLE);
+    again
+        .arg("replay")
+        .arg(place.path())
+        .args(["--set", "sph.alpha=3"]);
+    let ended = end(&mut again).with_code(2);
+    assert!(
+        ended
+            .stderr
+            .contains("`output`, `measure` and `fragments` alone"),
+        "{ended:#?}"
+    );
+    let ended = end(command(WHIPPLE).arg("replay").arg(place.path())).with_code(2);
+    assert!(ended.stderr.contains("neither a run"), "{ended:#?}");
+}
