@@ -10,11 +10,12 @@ use super::output_format::{OutputFormat, wrote};
 use super::results::{Results, ResultsError};
 use super::which::Which;
 use desk::report;
+use desk::sweep::Definition;
 use files::output::{OutputError, RunFolder, write_atomically};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::warn;
 
-/// Write one HTML page that tells a run, with a viewer in three dimensions; or two runs side by side
+/// Write one HTML page that tells a run, with a viewer in three dimensions; or two runs side by side, or a sweep
 ///
 /// The page holds all that it shows: verdict on the run's figures, pictures, particles, case, energies, steps,
 /// contacts, measures, fragments, load. It opens from disk and asks no network. What a run does not have is
@@ -23,9 +24,10 @@ use files::run::say::warn;
 #[command(after_help = "Examples:
   whipple report runs/impact
   whipple report runs/impact --out impact.html --particles 200000 --frames 10
-  whipple report runs/coarse runs/fine --out coarse-fine.html")]
+  whipple report runs/coarse runs/fine --out coarse-fine.html
+  whipple report sweeps/shield")]
 pub struct ReportArgs {
-    /// Run folder; two to compare them
+    /// Run folder, two to compare them, or the folder of a sweep
     #[arg(value_name = "RUN", required = true, num_args = 1..=2)]
     pub runs: Vec<PathBuf>,
 
@@ -61,6 +63,8 @@ enum ReportError {
     NoRun { path: PathBuf, kind: &'static str },
     #[error("cannot write {}: a page has a name that ends in .html", .0.display())]
     Name(PathBuf),
+    #[error("{0}")]
+    Sweep(String),
     #[error(transparent)]
     Output(#[from] OutputError),
 }
@@ -88,6 +92,10 @@ fn write(args: &ReportArgs) -> Result<PathBuf, ReportError> {
     let path = target(args)?;
     let page = match &args.runs[..] {
         [a, b] => report::compare(&folder(a)?, &folder(b)?),
+        [sweep] if Definition::is_in(sweep) => {
+            let whole = sweep.canonicalize().unwrap_or_else(|_| sweep.clone());
+            report::swept(&whole).map_err(ReportError::Sweep)?
+        }
         runs => {
             let folder = folder(&runs[0])?;
             let options = report::PageOptions {

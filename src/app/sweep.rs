@@ -53,7 +53,8 @@ pub struct Shares {
 /// table in the end. Points are added by more values of the same keys.
 ///
 /// The table is sweep.csv, its chart sweep.png; a bisection has limits.csv and limits.png; with
-/// --format svg they are SVG.
+/// --format svg they are SVG. With --scatter there are bands.csv, bands.png and effects.csv, what each
+/// scattered key does to the means.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values,
@@ -65,6 +66,8 @@ Examples:
       --answers history.kinetic_energy
   whipple sweep shield.toml --vary body.bumper.shape.box.size.2=\"1, 2 mm\" \\
       --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"failed wall\"
+  whipple sweep shield.toml --scatter seed=1,2,3 --scatter spacing=\"0.2, 0.3 mm\" \\
+      --vary body.sphere.shape.sphere.radius=\"1..3 mm\" --bisect \"failed wall\"
   whipple sweep sweeps/shield                             # goes on
 
 A bisection finds where in the range of the last key its condition changes: an
@@ -82,6 +85,12 @@ pub struct SweepArgs {
     /// A key and its values; may be given many times
     #[arg(short, long, value_name = "KEY=VALUES")]
     vary: Vec<String>,
+
+    /// A key whose values are repetitions of one question, as seeds and constants within their
+    /// uncertainty: answers have means and bands over them. `seed` is that of the fillings of all
+    /// bodies, `spacing` takes those of all bodies with it. May be given many times
+    #[arg(long, value_name = "KEY=VALUES")]
+    scatter: Vec<String>,
 
     /// Find where in the range of the last key a condition changes, in place of running all of it
     #[arg(short, long, value_name = "CONDITION")]
@@ -160,7 +169,8 @@ fn exit_code(result: Result<u8, SweepError>) -> u8 {
 
 fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     let definition = if Definition::is_in(&args.case) {
-        if !args.vary.is_empty() || !args.shares.set.is_empty() || args.bisect.is_some() {
+        let has_keys = !args.vary.is_empty() || !args.scatter.is_empty();
+        if has_keys || !args.shares.set.is_empty() || args.bisect.is_some() {
             let title = "a sweep that goes on has its keys: name its case to give others";
             return Err(SweepError::Typed(title.to_owned()));
         }
@@ -171,12 +181,13 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         definition
     } else {
         let mut definition = args.shares.definition(&args.case, args.vary.clone())?;
+        definition.scatter.clone_from(&args.scatter);
         definition.bisect.clone_from(&args.bisect);
         definition.within = args.within;
         definition
     };
     let folder = definition.folder.clone();
-    let keys = definition.vary.len();
+    let scattered = definition.scattered();
     let (mut sweep, jobs) = args.shares.sweep(definition.clone())?;
     if let Some(number) = args.point {
         let is_finished = sweep.run_one(number, say)?;
@@ -194,7 +205,17 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     let tally = sweep.run(jobs, say)?;
     let table = folder.join("sweep.csv");
     wrote(&table, "");
-    if let Some((chart, path)) = sweep::draw(&folder, keys, args.chart.as_deref())? {
+    if scattered.contains(&true) {
+        wrote(
+            &folder.join("bands.csv"),
+            ": means and bands over what is scattered",
+        );
+        wrote(
+            &folder.join("effects.csv"),
+            ": what each scattered key does",
+        );
+    }
+    if let Some((chart, path)) = sweep::draw(&folder, &scattered, args.chart.as_deref())? {
         let path = path.with_extension(args.picture.ending());
         if let Err(error) = write_chart(&chart, None, &path) {
             warn(&format!("warning: {error}"));
@@ -290,6 +311,7 @@ impl Shares {
             digest: String::new(),
             settings: self.set.clone(),
             vary,
+            scatter: Vec::new(),
             converges: false,
             bisect: None,
             within: sweep::WITHIN,

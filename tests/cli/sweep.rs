@@ -240,3 +240,64 @@ fn damaged_folders_are_refused() {
         assert!(ended.stderr.starts_with("error: "), "{ended:#?}");
     }
 }
+
+/// Seeds and a constant are scattered: means and bands over them for each speed, what each does, and a chart.
+#[test]
+fn scattered_keys_have_bands() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("sweep");
+    let more = [
+        "--vary",
+        "body.sphere.velocity=5, 7 km/s",
+        "--scatter",
+        "seed=1, 2",
+        "--scatter",
+        "sph.alpha=0.8, 1.2",
+        "--set",
+        "body.plate.lattice=glass",
+        "--set",
+        "body.sphere.lattice=glass",
+        "--answers",
+        "history.kinetic_energy",
+        "--jobs",
+        "2",
+        "--threads",
+        "1",
+    ];
+    let ended = end(&mut sweep(&out, &more)).with_code(0);
+    assert!(ended.stdout.contains("8 points finished"), "{ended:#?}");
+    let rows = |name: &str| -> Vec<Vec<String>> {
+        let text = text(&out.join(name));
+        let lines = text.lines().skip(1);
+        lines
+            .map(|line| line.split(',').map(str::to_owned).collect())
+            .collect()
+    };
+    let (points, bands, effects) = (rows("sweep.csv"), rows("bands.csv"), rows("effects.csv"));
+    assert_eq!(points.len(), 9);
+    let of_speed: Vec<f64> = (points.iter().skip(1))
+        .filter(|row| row[0] == "5000.0")
+        .map(|row| row[5].parse().unwrap())
+        .collect();
+    assert!(of_speed[0] != of_speed[1], "seeds fill differently");
+    let mean = of_speed.iter().sum::<f64>() / 4.0;
+    assert_eq!(bands.len(), 3);
+    assert_eq!(
+        bands[1][..4],
+        ["5000.0", "history.kinetic_energy", "J", "4"]
+    );
+    assert!((bands[1][4].parse::<f64>().unwrap() / mean - 1.0).abs() < 1e-12);
+    assert_eq!(effects.len(), 5);
+    assert_eq!(effects[1][3], "seed");
+    assert!(out.join("bands.png").is_file());
+    end(command(WHIPPLE).arg("report").arg(&out)).with_code(0);
+    let page = text(&out.join("report.html"));
+    for part in [
+        "<h2>Bands</h2>",
+        "<h2>What matters</h2>",
+        "seed=1, 2",
+        "data:image/svg+xml",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+}

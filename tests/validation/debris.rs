@@ -59,12 +59,12 @@ fn quarter_of_a_cloud(seed: u32) -> Simulation {
     let text = format!(
         "dimension = 3\nspacing = \"0.14 mm\"\n[run]\nend_time = \"6 us\"\n\
          [time_step]\ncourant = 0.65\nforce = 0.2\ncontact = 1.0\n\
-         [material.core]\nlibrary = \"aluminium-2024-ductile\"\nfailure.johnson_cook = \"none\"\nfailure.fracture_energy = \"14 kJ/m^2\"\n\
+         [material.2024]\nlibrary = \"aluminium-2024-ductile\"\n\
          [material.6061]\nlibrary = \"aluminium-6061-ductile\"\n\
          [[body]]\nname = \"bumper\"\nmaterial = \"6061\"\nlattice = {{ kind = \"glass\", seed = {} }}\n\
          shape.cylinder = {{ axis = \"z\", radius = \"10 mm\", length = \"0.84 mm\", centre = [0, 0, \"0.42 mm\"] }}\n\
          spacing = {{ inner = \"0.14 mm\", outer = \"0.28 mm\", at = [0, 0, 0], axis = \"z\", within = \"4 mm\" }}\n\
-         [[body]]\nname = \"sphere\"\nmaterial = \"core\"\nlattice = {{ kind = \"glass\", seed = {seed} }}\n\
+         [[body]]\nname = \"sphere\"\nmaterial = \"2024\"\nlattice = {{ kind = \"glass\", seed = {seed} }}\n\
          shape.sphere = {{ centre = [0, 0, \"3 mm\"], radius = \"1.59 mm\" }}\n\
          velocity = [0, 0, \"-7.20 km/s\"]\ntouch = {{ body = \"bumper\", direction = \"-z\" }}\n\
          [[symmetry]]\naxis = \"x\"\n[[symmetry]]\naxis = \"y\"\n",

@@ -16,7 +16,9 @@ mod page;
 mod picture;
 mod run_files;
 mod sections;
+mod swept;
 mod viewer;
 
 pub use compared::compare;
 pub use page::{PageOptions, render};
+pub use swept::swept;

@@ -20,9 +20,15 @@ const OWN: &[&str] = &["run", "state"];
 /// [`SweepError::Output`] if a table cannot be read, [`SweepError::Typed`] if there is no such answer.
 pub fn draw(
     folder: &Path,
-    keys: usize,
+    scattered: &[bool],
     answer: Option<&str>,
 ) -> Result<Option<(Chart, PathBuf)>, SweepError> {
+    let keys = scattered.len();
+    if scattered.contains(&true) {
+        let sheet = read(&folder.join("bands.csv"))?;
+        let chart = bands(&sheet, answer)?;
+        return Ok(chart.map(|chart| (chart, folder.join("bands"))));
+    }
     let limits = folder.join("limits.csv");
     if answer.is_none() && limits.is_file() {
         let sheet = read(&limits)?;
@@ -43,6 +49,52 @@ pub fn draw(
     };
     let chart = at.and_then(|at| chart(&sheet, keys, at));
     Ok(chart.map(|chart| (chart, folder.join("sweep"))))
+}
+
+/// The chart of an answer's means, the first one's or that of a name, over the last key that is a number: with a band from the least
+/// to the largest.
+fn bands(sheet: &Sheet, answer: Option<&str>) -> Result<Option<Chart>, SweepError> {
+    let column = |name: &str| sheet.names.iter().position(|own| own == name);
+    let wanted = ["answer", "unit", "mean", "least", "largest"].map(column);
+    let [Some(at), Some(unit), Some(mean), Some(least), Some(largest)] = wanted else {
+        return Ok(None);
+    };
+    let with_mean = |row: &&(usize, Vec<String>)| row.1[mean].parse::<f64>().is_ok();
+    let first = sheet.rows.iter().find(with_mean);
+    let name = match (answer, first) {
+        (Some(name), _) => name.to_owned(),
+        (None, Some((_, row))) => row[at].clone(),
+        (None, None) => return Ok(None),
+    };
+    let rows: Vec<(usize, Vec<String>)> = (sheet.rows.iter())
+        .filter(|(_, row)| row[at] == name)
+        .cloned()
+        .collect();
+    let Some((_, row)) = rows.first() else {
+        return Err(SweepError::Typed(format!(
+            "the sweep has no answer `{name}`"
+        )));
+    };
+    // The answer's name and unit stand in its rows.
+    let mut own = sheet.clone();
+    for y in [mean, least, largest] {
+        own.names[y].clone_from(&name);
+        own.units[y].clone_from(&row[unit]);
+    }
+    own.rows.clone_from(&rows);
+    let Some(mut whole) = chart(&own, at, mean) else {
+        return Ok(None);
+    };
+    for y in [least, largest] {
+        let ends = chart(&own, at, y).map_or_else(Vec::new, |chart| chart.curves);
+        let rings = ends.into_iter().filter(|curve| curve.mark == Mark::Rings);
+        whole.curves.extend(rings.map(|curve| Curve {
+            mark: Mark::Thin,
+            ..curve
+        }));
+    }
+    whole.subtitle = "means, and from the least to the largest".to_owned();
+    Ok(Some(whole))
 }
 
 fn read(path: &Path) -> Result<Sheet, SweepError> {

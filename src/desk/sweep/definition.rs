@@ -31,6 +31,9 @@ pub struct Definition {
     pub settings: Vec<String>,
     /// `--vary`.
     pub vary: Vec<String>,
+    /// `--scatter`: keys whose values are repetitions of one question.
+    #[serde(default)]
+    pub scatter: Vec<String>,
     /// True if the only key is `spacing` and the spacings of bodies go with it.
     #[serde(default)]
     pub converges: bool,
@@ -88,8 +91,10 @@ impl Definition {
     /// # Errors
     /// A message on an invalid definition.
     pub fn plan(&self) -> Result<Plan, String> {
-        let varied: Result<Vec<Varied>, String> =
-            self.vary.iter().map(|text| Varied::parse(text)).collect();
+        let parse = |texts: &[String]| -> Result<Vec<Varied>, String> {
+            texts.iter().map(|text| Varied::parse(text)).collect()
+        };
+        let (mut varied, scattered) = (parse(&self.vary)?, parse(&self.scatter)?);
         let bisect = self.bisect.as_ref().map(|text| Condition::parse(text));
         let bisect = bisect
             .transpose()?
@@ -97,7 +102,20 @@ impl Definition {
         if !(self.within > 0.0 && self.within < 1.0) {
             return Err("`--within` must lie between 0 and 1".to_owned());
         }
-        Plan::new(&varied?, bisect)
+        // The key that is bisected stays the last one.
+        let at = varied.len() - usize::from(bisect.is_some()).min(varied.len());
+        varied.splice(at..at, scattered);
+        Plan::new(&varied, bisect)
+    }
+
+    /// For each key of the plan, whether it is scattered.
+    #[must_use]
+    pub fn scattered(&self) -> Vec<bool> {
+        let bisected = usize::from(self.bisect.is_some()).min(self.vary.len());
+        let mut scattered = vec![false; self.vary.len() - bisected];
+        scattered.extend(self.scatter.iter().map(|_| true));
+        scattered.extend(vec![false; bisected]);
+        scattered
     }
 
     /// The text of the resolved case, without the keys that vary.

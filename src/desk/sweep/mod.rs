@@ -5,6 +5,7 @@
 //! it was, runs no point twice, and its table is the same as if nothing had happened.
 
 mod answers;
+mod bands;
 mod chart;
 mod condition;
 mod converge;
@@ -13,6 +14,7 @@ mod plan;
 mod point;
 mod queue;
 mod richardson;
+mod seeds;
 mod shots;
 mod spacings;
 mod table;
@@ -123,14 +125,29 @@ impl Sweep {
 
     fn points(&self) -> Result<Vec<Point>, SweepError> {
         let mut points = self.plan.points(&self.known());
-        if self.definition.converges {
+        let scattered = self.definition.scattered();
+        let of_all = |name: &str| {
+            let mut keys = self.plan.keys.iter().zip(&scattered);
+            keys.position(|(key, scattered)| {
+                key == name && (*scattered || self.definition.converges)
+            })
+        };
+        if let Some(k) = of_all("spacing") {
             for point in &mut points {
-                let spacing = point.values.first().and_then(|value| value.number);
+                let spacing = point.values[k].number;
                 let (spacing, _) = spacing.ok_or_else(|| {
                     SweepError::Typed("a spacing must be a length, as in 0.1 mm".to_owned())
                 })?;
                 let settings = spacings::scaled(&self.case, spacing).map_err(SweepError::Typed)?;
                 point.settings.extend(settings);
+            }
+        }
+        if let Some(k) = of_all(seeds::KEY) {
+            for point in &mut points {
+                let own = format!("{}={}", seeds::KEY, point.values[k].text);
+                point.settings.retain(|setting| *setting != own);
+                let settings = seeds::of_all(&self.case, &point.values[k].text);
+                point.settings.extend(settings.map_err(SweepError::Typed)?);
             }
         }
         Ok(points)
@@ -298,14 +315,37 @@ impl Sweep {
         Ok(rows.collect())
     }
 
-    /// Writes `sweep.csv` and, of a bisection, `limits.csv`.
+    /// Writes `sweep.csv`, of a bisection `limits.csv`, and where keys are scattered `bands.csv` and `effects.csv`.
     fn write(&self) -> Result<(), SweepError> {
         let folder = &self.definition.folder;
-        let sheet = table::points(&self.plan.keys, &self.rows()?, &self.definition.answers);
-        write_atomically(&folder.join("sweep.csv"), &sheet.text())?;
-        if let Some(sheet) = table::limits(&self.plan, &self.bisections()) {
-            write_atomically(&folder.join("limits.csv"), &sheet.text())?;
+        let points = table::points(&self.plan.keys, &self.rows()?, &self.definition.answers);
+        write_atomically(&folder.join("sweep.csv"), &points.text())?;
+        let limits = table::limits(&self.plan, &self.bisections());
+        if let Some(limits) = &limits {
+            write_atomically(&folder.join("limits.csv"), &limits.text())?;
         }
+        let mut scattered = self.definition.scattered();
+        if !scattered.contains(&true) {
+            return Ok(());
+        }
+        // A row of limits has no column of the key that is bisected, and ends with a state; one of points has its run and its
+        // state before answers.
+        let (sheet, answers) = match &limits {
+            Some(limits) => {
+                scattered.pop();
+                (limits, scattered.len())
+            }
+            None => (&points, scattered.len() + 2),
+        };
+        let layout = bands::Layout { scattered, answers };
+        write_atomically(
+            &folder.join("bands.csv"),
+            &bands::bands(sheet, &layout).text(),
+        )?;
+        write_atomically(
+            &folder.join("effects.csv"),
+            &bands::effects(sheet, &layout).text(),
+        )?;
         Ok(())
     }
 
