@@ -72,15 +72,15 @@ fn numbers<'a>(rows: &'a [&'a [String]], column: usize) -> impl Iterator<Item = 
     cells.filter_map(|cell| cell.parse::<f64>().ok().filter(|value| value.is_finite()))
 }
 
-/// Words in a column of some rows, with their counts: `held 3, perforated 1`.
-fn words(rows: &[&[String]], column: usize) -> String {
+/// Words in a column of some rows, with their counts: `held 3, perforated 1`; and how many they are.
+fn words(rows: &[&[String]], column: usize) -> (String, usize) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let cells = rows.iter().filter_map(|row| row.get(column));
     for cell in cells.filter(|cell| !cell.is_empty() && cell.parse::<f64>().is_err()) {
         *counts.entry(cell).or_default() += 1;
     }
     let texts = counts.iter().map(|(word, count)| format!("{word} {count}"));
-    texts.collect::<Vec<_>>().join(", ")
+    (texts.collect::<Vec<_>>().join(", "), counts.values().sum())
 }
 
 fn text(value: f64) -> String {
@@ -106,9 +106,9 @@ pub fn bands(sheet: &Sheet, layout: &Layout) -> Sheet {
     for (keys, rows) in layout.groups(sheet) {
         for column in layout.answers..sheet.names.len() {
             let values: Vec<f64> = numbers(&rows, column).collect();
-            let (spread, words) = (Spread::of(&values), words(&rows, column));
-            let runs = spread.as_ref().map_or(0, |spread| spread.count);
-            if runs == 0 && words.is_empty() {
+            let (spread, (words, of_words)) = (Spread::of(&values), words(&rows, column));
+            let runs = of_words + spread.as_ref().map_or(0, |spread| spread.count);
+            if runs == 0 {
                 continue;
             }
             let mut row = keys.clone();
