@@ -158,14 +158,9 @@ fn find(launch: &Launch, args: &WhenArgs, condition: &Condition) -> Result<u8, O
             return Ok(code);
         }
     }
-    let shown = from_root(comm, || show(args, &out, &folder, [last, first]));
-    let drawn = shown?;
-    if !drawn {
-        comm.barrier();
-        return Ok(EXIT_INPUT);
-    }
+    let drawn = from_root(comm, || show(args, &out, &folder, [last, first]))?;
     comm.barrier();
-    Ok(0)
+    Ok(if drawn { 0 } else { EXIT_INPUT })
 }
 
 /// Where a condition begins to hold, by the rows of a run.

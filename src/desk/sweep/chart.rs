@@ -93,7 +93,7 @@ fn bands(sheet: &Sheet, answer: Option<&str>) -> Result<Option<Chart>, SweepErro
             ..curve
         }));
     }
-    whole.subtitle = "means, and from the least to the largest".to_owned();
+    "means, and from the least to the largest".clone_into(&mut whole.subtitle);
     Ok(Some(whole))
 }
 

@@ -175,6 +175,9 @@ pub fn reason(requests: u64) -> Option<&'static str> {
 }
 
 /// Parses a time of the simulation such as `0.1us` (s).
+///
+/// # Errors
+/// A message on a text of another form.
 pub fn parse_until(text: &str) -> Result<f64, String> {
     match input::time(text)? {
         time if time >= 0.0 => Ok(time),
