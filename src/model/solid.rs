@@ -253,6 +253,17 @@ impl Solid {
         0.5 * (upper - lower).norm()
     }
 
+    /// True if it has a form over and over.
+    #[must_use]
+    pub fn repeats(&self) -> bool {
+        match self {
+            Self::Primitive(..) => false,
+            Self::Union(parts) | Self::Intersection(parts) => parts.iter().any(Self::repeats),
+            Self::Difference(base, cuts) => base.repeats() || cuts.iter().any(Self::repeats),
+            Self::Repeat(..) => true,
+        }
+    }
+
     /// Adds the meshes among its forms.
     pub fn meshes<'a>(&'a self, meshes: &mut Vec<&'a Arc<Mesh>>) {
         match self {

@@ -6,6 +6,10 @@ use crate::Vec3;
 /// Share of a step by which points at a side of the region count as within.
 const WITHIN: f64 = 1e-9;
 
+/// Most points of a lattice to look at, and units that may hold one place.
+const MOST_POINTS: u64 = 100_000;
+const MOST_TOGETHER: f64 = 1000.0;
+
 /// Units at all points of a lattice through the origin that lie in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repeat {
@@ -27,10 +31,12 @@ pub struct Repeat {
 }
 
 impl Repeat {
-    /// Units at the points `Σ n_k steps_k` of a box (m), one to three steps (m) that are no sums of each other; nothing without a point in the
-    /// box, or with more than `most` to look at. Along axes along which no step goes, the box has no sides.
-    #[must_use]
-    pub fn new(unit: Solid, steps: Vec<Vec3>, region: (Vec3, Vec3), most: u64) -> Option<Self> {
+    /// Units at the points `Σ n_k steps_k` of a box (m), one to three steps (m) that are no sums of each other. Along axes along which no
+    /// step goes, the box has no sides.
+    ///
+    /// # Errors
+    /// Says that there is no such point or too many, or that a place is in too many units.
+    pub fn new(unit: Solid, steps: Vec<Vec3>, region: (Vec3, Vec3)) -> Result<Self, &'static str> {
         let mut all = steps.clone();
         if all.len() == 1 {
             let aside = if all[0].x.abs() > 0.5 * all[0].norm() {
@@ -43,7 +49,8 @@ impl Repeat {
         if all.len() == 2 {
             all.push(all[0].cross(&all[1]));
         }
-        let inverse = nalgebra::Matrix3::from_columns(&all).try_inverse()?;
+        let inverse = nalgebra::Matrix3::from_columns(&all).try_inverse();
+        let inverse = inverse.ok_or("steps from point to point are sums of each other")?;
         let counts = [0, 1, 2].map(|k| inverse.row(k).transpose());
         let (mut lower, mut upper) = region;
         for a in 0..3 {
@@ -73,13 +80,20 @@ impl Repeat {
         let looked_at = spans
             .iter()
             .fold(1_u64, |all, span| all.saturating_mul(*span));
-        if looked_at > most {
-            return None;
+        if looked_at > MOST_POINTS {
+            return Err("a shape is repeated a hundred thousand times at most");
         }
         let (low, high) = unit.bounds();
+        let half = (high - low) * 0.5;
+        let across = (0..steps.len()).map(|k| 2.0 * counts[k].abs().dot(&half) + 1.0);
+        if across.product::<f64>() > MOST_TOGETHER || unit.repeats() {
+            return Err(
+                "a shape that is repeated is some cells wide at most, and repeats none itself",
+            );
+        }
         let mut made = Self {
             middle: (low + high) * 0.5,
-            half: (high - low) * 0.5,
+            half,
             unit,
             steps,
             counts,
@@ -92,7 +106,11 @@ impl Repeat {
             points = (points.0.inf(&point), points.1.sup(&point));
         });
         made.points = points;
-        (points.0.x <= points.1.x).then_some(made)
+        if points.0.x <= points.1.x {
+            Ok(made)
+        } else {
+            Err("no point of the lattice lies from `lower` to `upper`")
+        }
     }
 
     /// The unit.

@@ -458,7 +458,7 @@ fn repeated() -> [Solid; 2] {
     );
     let steps = [Vec3::x(), Vec3::new(0.5, 0.75_f64.sqrt(), 0.0)];
     let (lower, upper) = (Vec3::new(-1.2, -1.8, 5.0), Vec3::new(2.0, 0.9, 5.0));
-    let units = Repeat::new(unit.clone(), steps.to_vec(), (lower, upper), 1000).unwrap();
+    let units = Repeat::new(unit.clone(), steps.to_vec(), (lower, upper)).unwrap();
     let mut parts = Vec::new();
     for a in -9..=9 {
         for b in -9..=9 {
@@ -535,7 +535,7 @@ fn hexagons_cut_out_of_a_box_leave_the_walls_of_a_honeycomb() {
     let rows = 0.75_f64.sqrt();
     let steps = vec![Vec3::x() * cell, Vec3::new(0.5, rows, 0.0)];
     let region = (Vec3::repeat(-9.0), Vec3::repeat(9.0));
-    let cells = Repeat::new(unit, steps, region, 10_000).unwrap();
+    let cells = Repeat::new(unit, steps, region).unwrap();
     // Two cells by two pairs of rows, whose sides cut cells in halves.
     let half = Vec3::new(1.0, 2.0 * rows, 0.5);
     let core = Solid::Difference(
@@ -554,21 +554,18 @@ fn hexagons_cut_out_of_a_box_leave_the_walls_of_a_honeycomb() {
 
 #[test]
 fn lattices_without_a_point_or_with_too_many_are_none() {
-    let ball = || Solid::Primitive(Primitive::Ball(0.3), Placement::at(Vec3::zeros()));
-    let line = |from: f64, to: f64, most: u64| {
+    let ball =
+        |radius: f64| Solid::Primitive(Primitive::Ball(radius), Placement::at(Vec3::zeros()));
+    let line = |unit: Solid, from: f64, to: f64| {
         let region = (Vec3::repeat(from), Vec3::repeat(to));
-        Repeat::new(ball(), vec![Vec3::y()], region, most)
+        Repeat::new(unit, vec![Vec3::y()], region)
     };
-    assert!(line(0.2, 0.8, 10).is_none());
-    assert!(line(0.2, 1.8, 10).is_some());
-    assert!(line(0.2, 99.8, 10).is_none());
-    assert!(
-        Repeat::new(
-            ball(),
-            vec![Vec3::y(), Vec3::y()],
-            (Vec3::zeros(), Vec3::zeros()),
-            9
-        )
-        .is_none()
-    );
+    assert!(line(ball(0.3), 0.2, 0.8).is_err());
+    assert!(line(ball(0.3), 0.2, 1e6).is_err());
+    assert!(line(ball(1e3), 0.2, 1.8).is_err());
+    let units = line(ball(0.3), 0.2, 1.8).unwrap();
+    let twice = Solid::Repeat(Box::new(units), Placement::at(Vec3::zeros()));
+    assert!(line(twice, 0.2, 1.8).is_err());
+    let nowhere = (Vec3::zeros(), Vec3::zeros());
+    assert!(Repeat::new(ball(0.3), vec![Vec3::y(), Vec3::y()], nowhere).is_err());
 }

@@ -16,8 +16,6 @@ use model::{Placement, Polygon, Primitive, Repeat, Shape, Solid, Vec3, rotation}
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
 const MOST_SHAPES: usize = 1000;
-/// Most units of a shape that is repeated.
-const MOST_UNITS: u64 = 1_000_000;
 
 impl Shapes<'_> {
     pub(super) fn ellipsoid(&self, table: &Spanned<EllipsoidParams>) -> Result<Shape, Diagnostic> {
@@ -259,16 +257,10 @@ impl Shapes<'_> {
             self.point(Some(&params.upper), "upper")?,
         );
         let unit = self.shape(&params.unit)?.solid(self.dimension);
-        match Repeat::new(unit, steps, region, MOST_UNITS) {
-            Some(units) => {
-                let place = Placement::at(Vec3::zeros());
-                Ok(Shape::Solid(Solid::Repeat(Box::new(units), place)))
-            }
-            None => refuse(
-                params.upper.span(),
-                "from `lower` to `upper` there is one point of the lattice at least, and a million at most",
-            ),
-        }
+        let units = Repeat::new(unit, steps, region)
+            .map_err(|title| Diagnostic::new(table.span(), title))?;
+        let place = Placement::at(Vec3::zeros());
+        Ok(Shape::Solid(Solid::Repeat(Box::new(units), place)))
     }
 
     fn parts(&self, parts: &Parts) -> Result<Vec<Solid>, Diagnostic> {
