@@ -127,11 +127,13 @@ fn walk(
                     found,
                 );
             }
-            // What the table itself is: its keys are those found already.
-            Some(below) if within(&below) => found.push(Key {
-                path,
-                kind: kind.clone(),
-            }),
+            // What the table itself is, or a list of such: its keys are those found already.
+            Some(below) if within(&below) => {
+                found.extend(kind.contains("Vec<").then(|| Key {
+                    path,
+                    kind: kind.clone(),
+                }));
+            }
             Some(table) => walk(
                 tables,
                 &[above, &[&table]].concat(),

@@ -26,11 +26,11 @@ const BUCKLES: &str = "what is pressed buckles";
 const NONE: &str = "no yarns across the cloth";
 const CORE: &str = "Hexcel 5052, 3/16 in cells, .001 in foil, 3.1 lb/ft³: strength and moduli of its tables of 1999, as commonly quoted; not checked against \
      them";
-const CORE_PLATEAU: &str = "crush strength (130 psi) of Hexcel 5052, 3/16 in cells, .001 in foil, 3.1 lb/ft³, as commonly quoted; not checked against its tables";
+const CORE_PLATEAU: &str = "with the .02 MPa of the pores the crush strength (130 psi) of Hexcel 5052, 3/16 in cells, .001 in foil, 3.1 lb/ft³, as commonly quoted; not checked against its tables";
 const CORE_ACROSS: &str = "assumed: walls bend across the cells";
 const CORE_TENSION: &str = "assumed: foils of 5052 at 280 MPa, which fill 1/54 of the core";
 const CORE_SHOCK: &str = "of aluminium 6061, as an approximation: Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
-const CORE_PORES: &str = "assumed: 50 kg/m³ of walls of 2680 kg/m³, which are crushed to a third of their density at 1 MPa";
+const CORE_PORES: &str = "assumed: 50 kg/m³ of walls of 2680 kg/m³, of which .2 MPa leave a quarter of the volume; speed of no one source";
 
 /// Shock data: c₀ (m/s), the slopes s₁ to s₃, and γ₀.
 fn shock(c0: f64, [s1, s2, s3]: [f64; 3], gamma0: f64) -> Eos {
@@ -118,7 +118,7 @@ records! {
                 g23: 152e6,
                 c1: 0.02e6,
                 c2: 0.02e6,
-                c3: 0.9e6,
+                c3: 0.88e6,
                 s12: 0.02e6,
                 s13: 1.45e6,
                 s23: 0.9e6,
@@ -168,9 +168,9 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
         "aluminium-honeycomb" => (
             53.6,
             PAlpha {
-                transition_pressure: 1e6,
-                transition_distension: 18.0,
-                ..p_alpha(0.05e6, 50e6, 1500.0)
+                transition_pressure: 0.2e6,
+                transition_distension: 13.0,
+                ..p_alpha(0.02e6, 50e6, 1500.0)
             },
             StrengthOf::Whole,
         ),

@@ -4,12 +4,12 @@
 //! taut again once they have their length:
 //!
 //! ```text
-//! τ_i = (1 − d_i) E_i ⟨ε_i⟩ − min(E_i ⟨−ε_i⟩, c_i),    τ_ij = 2 G_ij ε_ij,    |τ_ij| ≤ s_ij [1 − max(d_i, d_j)]
+//! τ_i = (1 − d_i) E_i ⟨ε_i⟩ − min(E_i ⟨−ε_i⟩, c_i ρ₀/ρ),    τ_ij = 2 G_ij ε_ij,    |τ_ij| ≤ s_ij [1 − max(d_i, d_j)]
 //! σ = (ρ/ρ_m) τ − ⟨p(ρ, e)⟩ I
 //! ```
 //!
 //! with the elastic strain ε in the frame of the directions, the torn shares `d_i` and the density `ρ_m` that the constants belong to. So a yarn
-//! pulls with the same force however thin the cloth has been pressed. The energy of members is
+//! pulls with the same force however thin the cloth has been pressed, and walls that are pressed along themselves crush at the same stress all the way. The energy of members is
 //! `[½ (1 − d_i) E_i ⟨ε_i⟩² + …]/ρ_m` for each mass, and no closed path of strain gives any. The matter between has pressure alone, that
 //! of the law of compaction: `⟨p⟩` bears no tension.
 //!
@@ -18,7 +18,7 @@
 
 use super::orthotropic::{bear, equivalent_squared, frame, held_strain, hold_strain, strain};
 use super::{Conditions, Contradiction, FAILED, LANES, Law, PointBatch, Stiffness};
-use crate::at_least;
+use crate::{at_least, at_most};
 
 law! {
     /// Members along three directions, which know nothing of each other. Zero stands for none at all.
@@ -96,16 +96,19 @@ impl Members {
         stress
     }
 
-    /// Returns an elastic strain to what members bear, and tells the work (J/m³) that it takes.
+    /// Returns an elastic strain to what members bear, of matter of a volume over that of the reference state, and tells the work (J/m³)
+    /// that it takes.
     #[inline(always)]
-    fn give_way(&self, strain: &mut [f64; 6], torn: &[f64; 3]) -> f64 {
+    fn give_way(&self, strain: &mut [f64; 6], torn: &[f64; 3], volume: f64) -> f64 {
+        let volume = at_most(volume, 1.0);
         let mut work = 0.0;
         for i in 0..3 {
-            let beyond = -self.stretch[i] * strain[i] - self.crush[i];
+            let crush = self.crush[i] * volume;
+            let beyond = -self.stretch[i] * strain[i] - crush;
             if self.crush[i] > 0.0 && beyond > 0.0 {
                 let flow = beyond / self.stretch[i];
                 strain[i] += flow;
-                work += self.crush[i] * flow;
+                work += crush * flow;
             }
         }
         for (plane, [i, j]) in PLANES.into_iter().enumerate() {
@@ -249,7 +252,8 @@ impl Law for Uncoupled {
             let axes = frame(point, k);
             let mut held = held_strain(point, k, &axes);
             if now.dt != 0.0 && point.damage[k] < FAILED {
-                work = now.members.give_way(&mut held, &torn(point, k));
+                let volume = now.reference_density / point.density[k];
+                work = now.members.give_way(&mut held, &torn(point, k), volume);
                 if work > 0.0 {
                     hold_strain(point, k, &axes, &held);
                 }

@@ -8,7 +8,7 @@ const WITHIN: f64 = 1e-9;
 
 /// Most points of a lattice to look at, and units that may hold one place.
 const MOST_POINTS: u64 = 100_000;
-const MOST_TOGETHER: f64 = 1000.0;
+const MOST_TOGETHER: f64 = 64.0;
 
 /// Units at all points of a lattice through the origin that lie in a box.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,6 +9,9 @@ use material::{Material, Porosity};
 use model::readable::shown;
 use model::{Body, Case, Shape};
 
+/// Distensions that differ by less, relatively, are one.
+const SAME: f64 = 1e-9;
+
 /// Gives each body with an areal density a material of its own distension.
 pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     let stated = |(b, table): (usize, &Spanned<BodyParams>)| distension(case, b, table.get_ref());
@@ -20,14 +23,15 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
         let (Some(distension), of) = (*distension, of_bodies[b]) else {
             continue;
         };
-        let known = made.iter().find(|&&(m, d, _)| m == of && d == distension);
+        let same = |other: f64| (other / distension - 1.0).abs() < SAME;
+        let known = made.iter().find(|&&(m, d, _)| m == of && same(d));
         if let Some(&(_, _, place)) = known {
             case.bodies[b].material = place;
             continue;
         }
         let mut material = with_distension(&case.materials[of], distension, &params[b])?;
         let mut users = of_bodies.iter().zip(&distensions);
-        let place = if users.all(|(m, d)| *m != of || *d == Some(distension)) {
+        let place = if users.all(|(m, d)| *m != of || d.is_some_and(same)) {
             case.materials[of] = material;
             of
         } else {
