@@ -690,6 +690,7 @@ shape.cylinder = { axis = "z", radius = "9 mm", length = "1.2 mm", centre = [0, 
     };
     assert_eq!(of(floor), (Vec3::x(), Vec3::z()));
     assert_eq!(of(side), (Vec3::y(), Vec3::x()));
-    let mass = case.particle_mass(floor) * particles(&case)[0] as f64;
+    let count = f64::from(u32::try_from(particles(&case)[0]).unwrap());
+    let mass = case.particle_mass(floor) * count;
     assert!((mass / (324e-6) - 1.0).abs() < 1e-9, "{mass}");
 }
