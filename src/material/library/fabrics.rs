@@ -163,14 +163,14 @@ pub(super) fn of(name: &str, density: f64, eos: &Eos) -> Option<Porosity> {
         sound_speed,
     };
     let (distension, law, strength) = match name {
-        "nextel-312-fabric" => (2.5, p_alpha(1e6, 300e6, 800.0), StrengthOf::Matrix),
-        "kevlar-fabric" => (1.9, p_alpha(0.5e6, 50e6, 400.0), StrengthOf::Matrix),
+        "nextel-312-fabric" => (2.5, p_alpha(1e6, 100e6, 1500.0), StrengthOf::Matrix),
+        "kevlar-fabric" => (1.9, p_alpha(0.5e6, 50e6, 1000.0), StrengthOf::Matrix),
         "aluminium-honeycomb" => (
             53.6,
             PAlpha {
                 transition_pressure: 0.2e6,
                 transition_distension: 13.0,
-                ..p_alpha(0.02e6, 50e6, 1500.0)
+                ..p_alpha(0.02e6, 50e6, 2500.0)
             },
             StrengthOf::Whole,
         ),
@@ -194,6 +194,10 @@ mod tests {
             let pores = pores.expect("pores");
             let wrong = pores.law.contradicts(pores.distension, &pores.solid);
             assert_eq!(wrong, None, "{}", record.name);
+            // As body.areal_density may have it.
+            let light = 1.8 * pores.distension;
+            let wrong = pores.law.contradicts(light, &pores.solid);
+            assert_eq!(wrong, None, "{}, light", record.name);
         }
     }
 }
