@@ -34,7 +34,7 @@ fn cloth_is_crushed_by_the_shock_of_the_jump_conditions() {
         }
         let inside = |i: &usize| (1e-3..3e-3).contains(&p.position[*i][0]);
         let rows: Vec<usize> = (0..p.owned()).filter(inside).collect();
-        let count = rows.len() as f64;
+        let count = f64::from(u32::try_from(rows.len()).unwrap());
         let mean = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&i| of(i)).sum::<f64>() / count;
         // Direction 3 is along x, through the layer, so that no yarn bears any of it.
         assert!(rows.iter().all(|&i| p.normal[i][0] == 1.0));
