@@ -56,6 +56,7 @@ q  | inputs/flyer-plate | run.max_steps=150
 r  | inputs/hertz-cylinder | spacing=0.6mm
    | inputs/hertz-disc | spacing=0.5mm
    | inputs/hiermaier-1997 | spacing=1mm body.plate.spacing.inner=1mm body.plate.spacing.outer=2mm run.max_steps=80
+   | inputs/honeycomb-panel | spacing=0.4mm body.core.spacing=0.6mm run.max_steps=60
    | inputs/noh | run.max_steps=300
    | inputs/punch | run.max_steps=60
 q  | inputs/quarter-impact | spacing=0.05mm
@@ -63,6 +64,7 @@ q  | inputs/quarter-impact | spacing=0.05mm
    | inputs/rubber-rings | spacing=2mm
    | inputs/sliding-block | run.max_steps=30
    | inputs/sod |
+   | inputs/stuffed-shield | spacing=0.4mm body.bumper.spacing.inner=0.4mm run.max_steps=60
    | inputs/taylor-bar | spacing=0.8mm
 qr | inputs/tension-strip | run.max_steps=120
    | inputs/wave-pulse |

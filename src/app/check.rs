@@ -17,7 +17,7 @@ use files::preflight::{self, Approach, memory};
 use files::run::exit::EXIT_INPUT;
 use files::run::say::{counted, say, warn};
 use model::readable::{short, shown};
-use model::{Body, Case, MeasureKind, Quantity, cube};
+use model::{Body, Case, FibrePattern, Fibres, MeasureKind, Quantity, cube};
 use plot::{self, PlotError};
 
 /// Check a case without running it: particles by body, memory, expected steps
@@ -159,6 +159,17 @@ fn mass(case: &Case, body: &Body, count: u64) -> String {
     }
 }
 
+/// Areal mass (kg/m²), thickness (m) and particles across a body of yarns or walls.
+fn layer(case: &Case, body: &Body) -> Option<[f64; 3]> {
+    let fibres = body.initial.fibres.as_ref();
+    let members = case.materials[body.material].has_members();
+    let straight = |fibres: &&Fibres| members && fibres.pattern == FibrePattern::Straight;
+    let normal = fibres.filter(straight)?.normal;
+    let thickness = body.thickness_along(&normal, case.dimension);
+    let layers = thickness / body.lattice.spacing;
+    Some([case.initial_density(body) * thickness, thickness, layers])
+}
+
 /// Prints the composition of a body; returns its number of particles.
 fn print_body(case: &Case, body: &Body) -> u64 {
     let count = populate::count(body, case.dimension, &case.symmetry, None);
@@ -193,6 +204,14 @@ fn print_body(case: &Case, body: &Body) -> u64 {
                 [lower, upper].map(|x| case.length_unit.vector(&x[..case.dimension]));
             say(&format!("  {:<16} spans {lower} to {upper}", ""));
         }
+    }
+    if let Some([areal, thickness, layers]) = layer(case, body) {
+        say(&format!(
+            "  {:<16} a layer of {}, {} thick, {layers:.1} particles across",
+            "",
+            shown(areal, "kg/m^2"),
+            case.length_unit.text(thickness),
+        ));
     }
     if let Some(beginning) = preflight::beginning(case, body) {
         say(&format!("  {:<16} begins with {beginning}", ""));

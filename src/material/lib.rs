@@ -456,6 +456,9 @@ impl Material {
         now.options = self.failure.options;
         if ALL && let Some(porosity) = &self.porosity {
             now.permanent = crushed;
+            if porosity.strength == StrengthOf::Matrix {
+                now.bearing_density = porosity.solid.density;
+            }
             now.reference_shear_modulus = self.shear_modulus();
             for k in 0..LANES {
                 now.packing[k] = batch.distension[k] / porosity.distension;
@@ -467,7 +470,9 @@ impl Material {
         }
         let strain = batch.plastic_strain;
         match &self.porosity {
-            Some(porosity) if ALL && porosity.strength == StrengthOf::Matrix => {
+            Some(porosity)
+                if ALL && porosity.strength == StrengthOf::Matrix && !self.has_members() =>
+            {
                 self.act_in_matrix(batch, &mut now, (&before[0], &shares));
             }
             _ => self.strength.act::<ALL>(batch, &mut now, &self.failure),
@@ -495,7 +500,17 @@ impl Material {
     /// True if it has directions of its own.
     #[must_use]
     pub fn has_directions(&self) -> bool {
-        matches!(self.strength, Strength::Orthotropic(_))
+        matches!(
+            self.strength,
+            Strength::Orthotropic(_) | Strength::Uncoupled(_)
+        )
+    }
+
+    /// True if yarns or walls along its directions bear each for itself.
+    #[inline(always)]
+    #[must_use]
+    pub fn has_members(&self) -> bool {
+        matches!(self.strength, Strength::Uncoupled(_))
     }
 
     /// True if it is an explosive.

@@ -33,6 +33,8 @@ mod riedel_hiermaier_thoma;
 mod riedel_hiermaier_thoma_failure;
 mod spall;
 mod steinberg_guinan;
+mod uncoupled;
+mod uncoupled_failure;
 mod viscous;
 mod von_mises;
 
@@ -70,6 +72,8 @@ pub use riedel_hiermaier_thoma::RiedelHiermaierThoma;
 pub use riedel_hiermaier_thoma_failure::RiedelHiermaierThomaFailure;
 pub use spall::{AfterSpall, Spall};
 pub use steinberg_guinan::SteinbergGuinan;
+pub use uncoupled::{Members, Uncoupled};
+pub use uncoupled_failure::UncoupledFailure;
 pub use viscous::Viscous;
 pub use von_mises::VonMises;
 
@@ -157,6 +161,8 @@ strength_laws! {
     neo_hookean: NeoHookean;
     /// Elastic along directions of the matter's own.
     orthotropic: Orthotropic;
+    /// Yarns or walls along directions of the matter's own.
+    uncoupled: Uncoupled;
     /// Elastic–plastic with a von Mises yield stress and linear hardening.
     von_mises: VonMises;
     /// Elastic–plastic with the flow stress of Johnson and Cook.
@@ -201,6 +207,8 @@ failure_laws! {
     riedel_hiermaier_thoma: RiedelHiermaierThomaFailure;
     /// Cracks across directions of the matter.
     hashin: Hashin;
+    /// Yarns or walls that tear.
+    uncoupled: UncoupledFailure;
     /// Cracks that grow from flaws.
     grady_kipp: GradyKipp;
 }

@@ -163,6 +163,13 @@ impl Body {
         }
     }
 
+    /// Its extent (m) along a unit vector.
+    #[must_use]
+    pub fn thickness_along(&self, way: &Vec3, dimension: usize) -> f64 {
+        let solid = self.shape.solid(dimension);
+        solid.support(way) + solid.support(&-way)
+    }
+
     /// `true` if a file gives a quantity of its particles.
     #[must_use]
     pub fn holds(&self, quantity: Quantity) -> bool {

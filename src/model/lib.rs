@@ -65,7 +65,7 @@ pub use pair_terms::TermOptions;
 pub use region::Region;
 pub use shape::Shape;
 pub use sizes::Sizes;
-pub use solid::{Placement, Polygon, Primitive, Solid, rotation};
+pub use solid::{Placement, Polygon, Primitive, Repeat, Solid, rotation};
 pub use surface::{
     Crossing, Feature, Foot, Mended, Mesh, MeshError, RigidSurface, Spin, SurfaceFile,
     SurfaceShape, closest_on_triangle, triangulate,

@@ -8,6 +8,7 @@
 mod ellipsoid;
 mod polygon;
 mod primitive;
+mod repeat;
 mod support;
 mod volume;
 
@@ -16,6 +17,7 @@ mod tests;
 
 pub use polygon::Polygon;
 pub use primitive::{Faces, Primitive};
+pub use repeat::Repeat;
 
 use std::sync::Arc;
 
@@ -92,6 +94,8 @@ pub enum Solid {
     Intersection(Vec<Solid>),
     /// The first without any of the others.
     Difference(Box<Solid>, Vec<Solid>),
+    /// One over and over, in its place.
+    Repeat(Box<Repeat>, Placement),
 }
 
 impl Solid {
@@ -116,6 +120,7 @@ impl Solid {
                 }
                 most.max(-cut.distance(x))
             }),
+            Self::Repeat(units, placement) => units.distance(&placement.inward(x)),
         }
     }
 
@@ -131,6 +136,11 @@ impl Solid {
             Self::Union(parts) => parts.iter().all(|part| part.is_beyond(x, distance)),
             Self::Intersection(parts) => parts.iter().any(|part| part.is_beyond(x, distance)),
             Self::Difference(base, _) => base.is_beyond(x, distance),
+            Self::Repeat(units, placement) => {
+                let (x, (lower, upper)) = (placement.inward(x), units.bounds());
+                let least = (x - x.zip_zip_map(&lower, &upper, f64::clamp)).norm();
+                least > 0.0 && least >= distance
+            }
         }
     }
 
@@ -164,6 +174,10 @@ impl Solid {
                     }
                 }
             }
+            Self::Repeat(units, placement) => {
+                let mut outward = |depth, normal| emit(depth, placement.turn * normal);
+                units.faces(&placement.inward(x), reach, &mut outward);
+            }
         }
     }
 
@@ -172,6 +186,9 @@ impl Solid {
     pub fn outward(&self, x: &Vec3) -> Vec3 {
         if let Self::Primitive(primitive, placement) = self {
             return placement.turn * primitive.outward(&placement.inward(x));
+        }
+        if let Self::Repeat(units, placement) = self {
+            return placement.turn * units.outward(&placement.inward(x));
         }
         let step = 1e-6 * self.reach();
         let slope = Vec3::from_fn(|a, _| {
@@ -197,6 +214,9 @@ impl Solid {
             Self::Union(parts) => of(parts, f64::NEG_INFINITY, f64::max),
             Self::Intersection(parts) => of(parts, f64::INFINITY, f64::min),
             Self::Difference(base, _) => base.support(n),
+            Self::Repeat(units, placement) => {
+                units.support(&placement.turn.tr_mul(n)) + n.dot(&placement.at)
+            }
         }
     }
 
@@ -217,6 +237,12 @@ impl Solid {
                 both.unwrap_or(nothing)
             }
             Self::Difference(base, _) => base.bounds(),
+            Self::Repeat(units, placement) => {
+                let (lower, upper) = units.bounds();
+                let centre = placement.at + placement.turn * ((lower + upper) * 0.5);
+                let aside = placement.turn.abs() * ((upper - lower) * 0.5);
+                (centre - aside, centre + aside)
+            }
         }
     }
 
@@ -227,11 +253,23 @@ impl Solid {
         0.5 * (upper - lower).norm()
     }
 
+    /// True if it has a form over and over.
+    #[must_use]
+    pub fn repeats(&self) -> bool {
+        match self {
+            Self::Primitive(..) => false,
+            Self::Union(parts) | Self::Intersection(parts) => parts.iter().any(Self::repeats),
+            Self::Difference(base, cuts) => base.repeats() || cuts.iter().any(Self::repeats),
+            Self::Repeat(..) => true,
+        }
+    }
+
     /// Adds the meshes among its forms.
     pub fn meshes<'a>(&'a self, meshes: &mut Vec<&'a Arc<Mesh>>) {
         match self {
             Self::Primitive(Primitive::Mesh(mesh), _) => meshes.push(mesh),
             Self::Primitive(..) => {}
+            Self::Repeat(units, _) => units.unit().meshes(meshes),
             Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
                     part.meshes(meshes);
@@ -249,7 +287,7 @@ impl Solid {
     /// Moves it (m).
     pub fn translate(&mut self, way: &Vec3) {
         match self {
-            Self::Primitive(_, placement) => placement.at += way,
+            Self::Primitive(_, placement) | Self::Repeat(_, placement) => placement.at += way,
             Self::Union(parts) | Self::Intersection(parts) => {
                 for part in parts {
                     part.translate(way);
@@ -267,7 +305,7 @@ impl Solid {
     /// Turns it about a point (m).
     pub fn rotate(&mut self, turn: &nalgebra::Matrix3<f64>, about: &Vec3) {
         match self {
-            Self::Primitive(_, placement) => {
+            Self::Primitive(_, placement) | Self::Repeat(_, placement) => {
                 placement.at = about + turn * (placement.at - about);
                 placement.turn = turn * placement.turn;
             }

@@ -154,11 +154,11 @@ particle_fields! {
     opening_2: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
     /// Strain of open cracks across its direction 3.
     opening_3: Scalar,                    "",       State,    -,              OnDemand, CRACKS;
-    /// Damage of fibres, by cracks across direction 1.
+    /// Damage of fibres, by cracks across direction 1; of yarns or walls along it the share that is torn.
     fibre_damage: Scalar,                 "",       State,    -,              IfHeld,   CRACKS;
-    /// Damage of the matrix, by cracks across direction 2.
+    /// Damage of the matrix, by cracks across direction 2; of yarns or walls along it the share that is torn.
     matrix_damage: Scalar,                "",       State,    -,              IfHeld,   CRACKS;
-    /// Damage between layers, by cracks across direction 3.
+    /// Damage between layers, by cracks across direction 3; of yarns or walls along it the share that is torn.
     delamination: Scalar,                 "",       State,    -,              IfHeld,   CRACKS;
     /// Plastic work on the matter so far.
     plastic_energy: Scalar,               "J/kg",   State,    -,              OnDemand, YIELD;

@@ -646,3 +646,51 @@ fn a_table_of_states_is_that_with_which_the_case_began() {
     let message = refused.expect_err("another file").to_string();
     assert!(message.contains("no longer the one"), "{message}");
 }
+
+/// Cloth lies in the plane of its plate, and has the pores with which it has its mass for an area.
+#[test]
+fn cloth_needs_its_mass_for_an_area_alone() {
+    let case = parse(
+        "case.toml",
+        r#"
+dimension = 3
+spacing = "0.3 mm"
+[run]
+end_time = "1 us"
+[material.cloth]
+library = "kevlar-fabric"
+[[body]]
+name = "floor"
+material = "cloth"
+areal_density = "1 kg/m^2"
+shape.box = { lower = ["-9 mm", "-9 mm", 0], upper = ["9 mm", "9 mm", "1.2 mm"] }
+[[body]]
+name = "side"
+material = "cloth"
+shape.box = { lower = ["20 mm", "-9 mm", 0], upper = ["21.2 mm", "9 mm", "9 mm"] }
+[[body]]
+name = "ceiling"
+material = "cloth"
+areal_density = "1 kg/m^2"
+shape.cylinder = { axis = "z", radius = "9 mm", length = "1.2 mm", centre = [0, 0, "9 mm"] }
+"#,
+        &[],
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
+    let [floor, side, ceiling] = case.bodies.as_slice() else {
+        panic!("three bodies")
+    };
+    let density = |body: &model::Body| case.initial_density(body);
+    assert!((density(floor) * 1.2e-3 - 1.0).abs() < 1e-12);
+    assert_eq!(floor.material, ceiling.material);
+    assert!((density(side) - 1440.0 / 1.9).abs() < 1e-9);
+    let of = |body: &model::Body| {
+        let fibres = body.initial.fibres.as_ref().unwrap();
+        (fibres.along, fibres.normal)
+    };
+    assert_eq!(of(floor), (Vec3::x(), Vec3::z()));
+    assert_eq!(of(side), (Vec3::y(), Vec3::x()));
+    let count = f64::from(u32::try_from(particles(&case)[0]).unwrap());
+    let mass = case.particle_mass(floor) * count;
+    assert!((mass / (324e-6) - 1.0).abs() < 1e-9, "{mass}");
+}

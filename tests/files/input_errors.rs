@@ -60,7 +60,7 @@ fn a_misspelled_key_names_the_nearest() {
 13 | materiel = \"metal\"
    | ^^^^^^^^ did you mean `material`?
    |
-   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `fibres`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
+   = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `areal_density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `fibres`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     assert_eq!(
         message(&GOOD.replacen("material = ", "materiel = ", 1), &[]),
         expected
@@ -75,7 +75,7 @@ fn an_override_is_shown_itself() {
 1 | body.ball.velocty=[0, 0, 0]
   |           ^^^^^^^ did you mean `velocity`?
   |
-  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `fibres`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
+  = help: the choices are `name`, `material`, `shape`, `particles`, `lattice`, `spacing`, `velocity`, `speed`, `angle`, `angular_velocity`, `density`, `areal_density`, `specific_energy`, `temperature`, `plastic_strain`, `pressure`, `stress`, `overburden`, `form`, `fibres`, `touch`, `rigid`, `free`, `moves`, `turns`, `pivot`, `motion`";
     let set = [
         "run.max_steps=1",
         "body.ball.velocty=[0, 0, 0]",

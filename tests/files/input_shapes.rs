@@ -130,6 +130,26 @@ fn shapes_go_together() {
     }
 }
 
+/// A core of hexagonal cells is a box without a hexagon at each point of a lattice.
+#[test]
+fn a_honeycomb_is_a_box_without_hexagons() {
+    let core = "lattice = \"glass\"\n[body.shape]\ndifference = [\n\
+        { box = { size = [\"6 mm\", \"5.196152 mm\", \"2 mm\"] } },\n\
+        { repeat = { unit = { prism = { sides = 6, across_flats = \"2.4 mm\", length = \"3 mm\" } }, \
+        lattice = \"hexagonal\", cell = \"3 mm\", lower = [\"-6 mm\", \"-6 mm\", 0], upper = [\"6 mm\", \"6 mm\", 0] } } ]";
+    let case = case(3, core, "");
+    let body = &case.bodies[0];
+    let volume = 6.0 * 5.196_152 * 2.0 * (1.0 - 0.8 * 0.8);
+    let told = body.shape.volume(3) * 1e9;
+    assert!((told / volume - 1.0).abs() < 2e-3, "{told} for {volume}");
+    let sites: Vec<_> = populate::sites(body, 3, &[], None).collect();
+    assert!(sites.len() > 300, "{}", sites.len());
+    for site in sites {
+        let x = Vec3::from(site.position);
+        assert!(body.shape.distance(&x, 3) < 0.0, "{x}");
+    }
+}
+
 #[test]
 fn flat_shapes_are_sections() {
     for (shape, area) in [

@@ -36,7 +36,7 @@ pub fn keys() -> Vec<Key> {
         }
     }
     let mut found = Vec::new();
-    walk(&tables, "CaseParams", "", &mut found);
+    walk(&tables, &["CaseParams"], "", &mut found);
     found
 }
 
@@ -104,11 +104,11 @@ fn type_of(row: &str) -> &str {
 
 fn walk(
     tables: &BTreeMap<String, Vec<(String, String)>>,
-    table: &str,
+    above: &[&str],
     path: &str,
     found: &mut Vec<Key>,
 ) {
-    for (key, kind) in &tables[table] {
+    for (key, kind) in &tables[above[above.len() - 1]] {
         let path = format!("{path}{key}");
         let words = || kind.split(['<', '>']).filter(|word| !word.is_empty());
         let below = words().find_map(|word| {
@@ -117,16 +117,29 @@ fn walk(
                 .into_iter()
                 .find(|w| tables.contains_key(w))
         });
+        let within = |table: &str| above.contains(&table);
         match below {
             Some(table) if words().any(|word| word == "Named") => {
-                walk(tables, &table, &format!("{path}.*."), found);
+                walk(
+                    tables,
+                    &[above, &[&table]].concat(),
+                    &format!("{path}.*."),
+                    found,
+                );
             }
-            // A list of what the table itself is: its keys are those found already.
-            Some(below) if below == table => found.push(Key {
-                path,
-                kind: kind.clone(),
-            }),
-            Some(table) => walk(tables, &table, &format!("{path}."), found),
+            // What the table itself is, or a list of such: its keys are those found already.
+            Some(below) if within(&below) => {
+                found.extend(kind.contains("Vec<").then(|| Key {
+                    path,
+                    kind: kind.clone(),
+                }));
+            }
+            Some(table) => walk(
+                tables,
+                &[above, &[&table]].concat(),
+                &format!("{path}."),
+                found,
+            ),
             None => found.push(Key {
                 path,
                 kind: kind.clone(),

@@ -26,3 +26,4 @@ mod strength;
 mod support;
 mod tables;
 mod thermal;
+mod uncoupled;

@@ -272,6 +272,10 @@ fn failure_on_any_ranks_and_through_restarts() {
         nu12 = 0.3, nu13 = 0.3, nu23 = 0.3, g12 = \"10 GPa\", g13 = \"10 GPa\", g23 = \"8 GPa\", crush_stress = \"1 GPa\" } }";
     let laminate = "material.aluminium.failure={ hashin = { t1 = \"2 GPa\", t2 = \"0.3 GPa\", t3 = \"0.1 GPa\", \
         s12 = \"0.2 GPa\", s13 = \"0.2 GPa\", s23 = \"0.1 GPa\", gf1 = \"1 kJ/m^2\", gf2 = \"100 J/m^2\", gf3 = \"50 J/m^2\" } }";
+    let yarns = "material.aluminium.strength={ uncoupled = { e1 = \"70 GPa\", e2 = \"40 GPa\", e3 = \"5 GPa\", \
+        g12 = \"1 GPa\", g13 = \"1 GPa\", c3 = \"0.2 GPa\", s12 = \"50 MPa\", s13 = \"50 MPa\" } }";
+    let cloth = "material.aluminium.failure={ uncoupled = { t1 = \"0.4 GPa\", t2 = \"0.3 GPa\", t3 = \"0.1 GPa\", \
+        gf1 = \"1 kJ/m^2\", gf2 = \"100 J/m^2\" } }";
     let bulking = "material.aluminium.failure={ johnson_holmquist_2 = { d1 = 0.005, d2 = 1 } }";
     let fields = |names: &str| format!("output.fields=[\"damage\", \"failure_energy\", {names}]");
     let all = [
@@ -295,6 +299,12 @@ fn failure_on_any_ranks_and_through_restarts() {
             fields(
                 "\"fibre_damage\", \"matrix_damage\", \"delamination\", \"opening_3\", \"fibre\", \"normal\"",
             ),
+        ),
+        (
+            "cloth",
+            cloth,
+            yarns,
+            fields("\"fibre_damage\", \"matrix_damage\", \"delamination\", \"fibre\", \"normal\""),
         ),
         (
             "tension",
@@ -733,6 +743,7 @@ fields = ["temperature", "pressure", "deviatoric_stress", "plastic_strain"]
         "rubber",
         "iron-tillotson",
         "carbon-epoxy",
+        "kevlar-fabric",
         "air",
     ];
     for (n, name) in (0_u32..).zip(materials) {

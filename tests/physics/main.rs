@@ -47,4 +47,5 @@ mod spall;
 mod spin;
 mod stress_points;
 mod time_step;
+mod uncoupled;
 mod waves;

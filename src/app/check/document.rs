@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{machine, mass_of, meetings, wall_time};
+use super::{layer, machine, mass_of, meetings, wall_time};
 use comm::Comm;
 use files::output::unit_of_model;
 use files::plan::{self, Files};
@@ -51,6 +51,7 @@ pub(super) fn document(
         "warnings": warnings,
         "units": {
             "mass": unit_of_model("kg", case.dimension),
+            "areal_density": "kg/m^2",
             "spacing": "m",
             "smoothing_length": "m",
             "memory_of_rank": "bytes",
@@ -73,6 +74,7 @@ fn of_body(case: &Case, body: &Body) -> (Value, u64) {
         "spacing": sizes.map(|size| size * body.lattice.spacing),
         "smoothing_length": sizes.map(|size| size * body.smoothing_length),
         "mass": mass_of(case, body, count),
+        "areal_density": layer(case, body).map(|[areal, ..]| areal),
         "rigid": body.rigid.is_some(),
         "total": body.total,
     });

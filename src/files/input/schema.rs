@@ -9,7 +9,7 @@ use toml::Spanned;
 use super::forms::{Named, OneOrMany};
 use super::profile::ProfileParams;
 use super::quantity::{
-    Acceleration, Angle, Density, Extent, Gravitation, Length, Placed, Pressure, Rate,
+    Acceleration, Angle, ArealMass, Density, Extent, Gravitation, Length, Placed, Pressure, Rate,
     SpecificEnergy, Strain, Temperature, Time, Velocity,
 };
 use super::source::Diagnostic;
@@ -154,6 +154,8 @@ tables! {
         angular_velocity: Option<Spanned<AngularVelocityParams>> => "none";
         /// Initial density.
         density: Option<Placed<Density>>, Positive => "the material's reference density";
+        /// Mass for an area of a layer with pores, as of cloth: how much of it is pores follows from its thickness.
+        areal_density: Option<Placed<ArealMass>>, Positive => "that of its density and thickness";
         /// Initial specific energy.
         specific_energy: Option<Spanned<ProfileParams<SpecificEnergy>>> => "that of the material's reference state";
         /// Initial temperature, in place of it.
@@ -170,7 +172,7 @@ tables! {
         /// (updated), or the initial one of what yields and nothing meets faster than a tenth of its sound speed (auto).
         form: Option<Spanned<BodyForm>> = BodyForm::Auto;
         /// Directions of matter that has some of its own.
-        fibres: Option<Spanned<FibresParams>> => "1 along x, 3 along z";
+        fibres: Option<Spanned<FibresParams>> => "1 along x, 3 along z; in plates of `strength.uncoupled` 3 across them";
         /// Moves the body until it touches another one.
         touch: Option<TouchParams> => "not moved";
         /// True if the body is rigid: it keeps its velocity, whatever acts on it, unless it is `free`.
@@ -193,9 +195,9 @@ tables! {
         /// or 1 around an axis and 3 away from it (wrapped).
         pattern: Option<FibrePattern> = FibrePattern::Straight;
         /// Direction 1 of what is straight.
-        along: Option<Spanned<AxisParams>> => "x";
+        along: Option<Spanned<AxisParams>> => "x, where 3 is along x y";
         /// Direction 3 of what is straight.
-        normal: Option<Spanned<AxisParams>> => "z";
+        normal: Option<Spanned<AxisParams>> => "z; in plates of `strength.uncoupled` across them";
         /// Axis of the other patterns.
         axis: Option<Spanned<AxisParams>> => "z";
         /// A point of the axis, from which layers count.

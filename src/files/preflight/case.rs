@@ -6,6 +6,8 @@ use model::{Body, Case, ContactMode};
 
 /// Fewer particles than this across the thinnest section resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
+/// Layers of yarns or walls bend without waves.
+const ACROSS_LAYER: f64 = 3.0;
 /// Fewer than this across what strikes in three dimensions give rough figures.
 const ACROSS_PROJECTILE: f64 = 10.0;
 /// A stiffness of contact this many times above or below its default is a mistake.
@@ -117,7 +119,9 @@ pub fn across(case: &Case, approaches: &[Approach]) -> Vec<Across> {
         .map(|(index, body)| Across {
             body: index,
             particles: thickness(body, case) / body.lattice.spacing,
-            least: if strikes(index, body) {
+            least: if case.materials[body.material].has_members() {
+                ACROSS_LAYER
+            } else if strikes(index, body) {
                 ACROSS_PROJECTILE
             } else {
                 ACROSS

@@ -54,7 +54,12 @@ pub fn warnings(case: &Case, approaches: &[Approach], messages: &mut Vec<String>
             partner.name,
             shown(closing, "m/s")
         );
-        let ratio = velocity / sound_speed(material);
+        // The equation of state is that of the solid between pores.
+        let solid = material
+            .porosity
+            .as_ref()
+            .map(|pores| pores.solid.sound_speed());
+        let ratio = velocity / solid.unwrap_or_else(|| sound_speed(material));
         if let Some(what) = beyond(&material.eos, ratio).filter(|_| !warned[index]) {
             warned[index] = true;
             messages.push(format!(

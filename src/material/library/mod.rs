@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ceramics`, `composites`, `ductile` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `composites`, `ductile`, `fabrics` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};
@@ -33,6 +33,7 @@ mod ceramics;
 mod composites;
 mod ductile;
 mod explosives;
+mod fabrics;
 mod fluids;
 mod heavy;
 mod impact;
@@ -61,6 +62,7 @@ fn records() -> Vec<&'static Record> {
         composites::RECORDS,
         ductile::RECORDS,
         explosives::RECORDS,
+        fabrics::RECORDS,
         fluids::RECORDS,
         heavy::RECORDS,
         impact::RECORDS,
@@ -87,7 +89,8 @@ pub fn find(name: &str) -> Option<Material> {
     record(name).map(|record| {
         let parts = (record.make)();
         let heat = |constants| Thermal::new(constants, parts.density, &parts.eos);
-        let porosity = porous::of(record.name, parts.density, &parts.eos);
+        let porosity = porous::of(record.name, parts.density, &parts.eos)
+            .or_else(|| fabrics::of(record.name, parts.density, &parts.eos));
         Material {
             name: record.name.to_owned(),
             reference_density: porosity

@@ -1,7 +1,7 @@
 //! Interface of a law of the material point, and the way those of a material act together.
 
 use super::failure::FailureOptions;
-use super::{LANES, Lanes, PointBatch, Stiffness, strain_rates_squared};
+use super::{LANES, Lanes, Members, PointBatch, Stiffness, strain_rates_squared};
 use crate::ThermalConstants;
 use crate::declare::Listed;
 use numerics::lanes::F64x8;
@@ -189,6 +189,10 @@ pub struct Conditions {
     pub curves: Curves,
     /// Moduli of a law with directions; at first none.
     pub stiffness: Stiffness,
+    /// What members bear, of a law that has some; at first none.
+    pub members: Members,
+    /// Density (kg/m³) that the constants of the strength belong to: at first that of the reference state.
+    pub bearing_density: f64,
     /// Options of the failure.
     pub options: FailureOptions,
 }
@@ -271,6 +275,8 @@ impl Conditions {
                 hardened: [0.0; LANES],
             },
             stiffness: Stiffness::ZERO,
+            members: Members::NONE,
+            bearing_density: reference_density,
             options: FailureOptions::DEFAULT,
         }
     }

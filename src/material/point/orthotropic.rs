@@ -291,7 +291,7 @@ pub(super) fn bear(point: &mut PointBatch, k: usize, frame: &[f64; 9], stress: &
 
 /// Square of the equivalent stress (Pa²) of a stress.
 #[inline(always)]
-fn equivalent_squared(s: &[f64; 6]) -> f64 {
+pub(super) fn equivalent_squared(s: &[f64; 6]) -> f64 {
     let [a, b, c] = [s[0] - s[1], s[1] - s[2], s[2] - s[0]];
     0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5])
 }
@@ -419,7 +419,7 @@ impl Orthotropic {
 
 /// Advances strain and directions of lane k by a step (s).
 #[inline(always)]
-fn strain(point: &mut PointBatch, k: usize, dt: f64) {
+pub(super) fn strain(point: &mut PointBatch, k: usize, dt: f64) {
     if point.damage[k] >= FAILED {
         for component in &mut point.elastic_strain {
             component[k] = 0.0;

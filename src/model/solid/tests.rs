@@ -106,6 +106,8 @@ fn solids() -> Vec<Solid> {
     all.push(Solid::Union(vec![ball(-0.5), ball(0.5)]));
     all.push(Solid::Intersection(vec![ball(0.5), cube.clone()]));
     all.push(Solid::Difference(Box::new(cube), vec![ball(1.0)]));
+    let [units, _] = repeated();
+    all.push(units);
     all
 }
 
@@ -212,7 +214,7 @@ proptest! {
     /// face's normal leads out.
     #[test]
     fn distances_are_bounds_and_faces_lie_where_they_say(
-        which in 0_usize..14,
+        which in 0_usize..15,
         x in prop::array::uniform3(-1.5_f64..1.5),
         aside in prop::array::uniform3(-0.5_f64..0.5),
     ) {
@@ -231,7 +233,7 @@ proptest! {
                 }
                 // On the surface of the part whose face it is, so never deep inside.
                 let on = solid.distance(&(x + normal * (depth + 1e-6)));
-                let is_union = matches!(solid, Solid::Union(_));
+                let is_union = matches!(solid, Solid::Union(_) | Solid::Repeat(..));
                 if on < -1e-4 && !is_union && depth <= -here + 1e-9 {
                     wrong = Some(format!("depth {depth}, beyond it {on}"));
                 }
@@ -446,4 +448,124 @@ fn a_smooth_mesh_tells_one_face() {
             );
         }
     }
+}
+
+/// Balls on a lattice of triangles, aslant in space, and what they are one by one.
+fn repeated() -> [Solid; 2] {
+    let unit = Solid::Primitive(
+        Primitive::Ball(0.3),
+        Placement::at(Vec3::new(0.2, 0.1, -0.4)),
+    );
+    let steps = [Vec3::x(), Vec3::new(0.5, 0.75_f64.sqrt(), 0.0)];
+    let (lower, upper) = (Vec3::new(-1.2, -1.8, 5.0), Vec3::new(2.0, 0.9, 5.0));
+    let units = Repeat::new(unit.clone(), steps.to_vec(), (lower, upper)).unwrap();
+    let mut parts = Vec::new();
+    for a in -9..=9 {
+        for b in -9..=9 {
+            let at = steps[0] * f64::from(a) + steps[1] * f64::from(b);
+            if (0..2).all(|c| lower[c] <= at[c] && at[c] <= upper[c]) {
+                let mut part = unit.clone();
+                part.translate(&at);
+                parts.push(part);
+            }
+        }
+    }
+    let mut both = [
+        Solid::Repeat(Box::new(units), Placement::at(Vec3::zeros())),
+        Solid::Union(parts),
+    ];
+    for solid in &mut both {
+        solid.rotate(
+            &rotation(&Vec3::new(1.0, 2.0, -0.5), 0.7),
+            &Vec3::new(0.1, 0.2, 0.3),
+        );
+        solid.translate(&Vec3::new(0.0, -0.7, 0.2));
+    }
+    both
+}
+
+#[test]
+fn what_is_repeated_is_the_union_of_its_units() {
+    let [units, union] = repeated();
+    let mut outside = 0;
+    for n in 0..4000 {
+        let f = |k: u32| f64::from(n * k % 4001) / 4000.0 * 8.0 - 4.0;
+        let x = Vec3::new(f(1), f(61), f(997));
+        let [a, b] = [&units, &union].map(|solid| solid.distance(&x));
+        assert!((a - b).abs() < 1e-12, "{x}: {a} for {b}");
+        outside += u32::from(a > 0.0);
+        if a < 0.0 {
+            let faces = |solid: &Solid| {
+                let mut found = Vec::new();
+                solid.faces(&x, 1.0, &mut |depth, normal| found.push((depth, normal)));
+                found
+            };
+            let [a, b] = [&units, &union].map(faces);
+            assert!(a.len() == 1 && (a[0].0 - b[0].0).abs() < 1e-12);
+            assert!((a[0].1 - b[0].1).norm() < 1e-9);
+        }
+    }
+    assert!(outside > 100);
+    let volume = union.volume(3);
+    assert!((units.volume(3) / volume - 1.0).abs() < 1e-6);
+    let (low, high) = units.bounds();
+    let (l, h) = union.bounds();
+    assert!((0..3).all(|a| low[a] <= l[a] + 1e-12 && h[a] - 1e-12 <= high[a]));
+}
+
+/// A core of hexagonal cells: walls of a tenth of a cell fill what hexagons leave.
+#[test]
+fn hexagons_cut_out_of_a_box_leave_the_walls_of_a_honeycomb() {
+    let hexagon = |across: f64| {
+        let radius = 0.5 * across / (PI / 6.0).cos();
+        let corner = |n: u32| {
+            let angle = f64::from(2 * n + 1) * PI / 6.0;
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        Polygon::new((0..6).map(corner).collect()).unwrap()
+    };
+    let (cell, across) = (1.0, 0.9);
+    let unit = Solid::Primitive(
+        Primitive::Prism {
+            section: hexagon(across),
+            half: 1.0,
+        },
+        Placement::at(Vec3::zeros()),
+    );
+    let rows = 0.75_f64.sqrt();
+    let steps = vec![Vec3::x() * cell, Vec3::new(0.5, rows, 0.0)];
+    let region = (Vec3::repeat(-9.0), Vec3::repeat(9.0));
+    let cells = Repeat::new(unit, steps, region).unwrap();
+    // Two cells by two pairs of rows, whose sides cut cells in halves.
+    let half = Vec3::new(1.0, 2.0 * rows, 0.5);
+    let core = Solid::Difference(
+        Box::new(Solid::Primitive(
+            Primitive::Box(half),
+            Placement::at(Vec3::zeros()),
+        )),
+        vec![Solid::Repeat(Box::new(cells), Placement::at(Vec3::zeros()))],
+    );
+    let walls = 1.0 - across * across / (cell * cell);
+    let share = core.volume(2) / (4.0 * half.x * half.y);
+    assert!((share / walls - 1.0).abs() < 1e-3, "{share} for {walls}");
+    assert!(core.distance(&Vec3::new(0.5, 0.0, 0.0)) < -0.049);
+    assert!(core.distance(&Vec3::zeros()) > 0.4);
+}
+
+#[test]
+fn lattices_without_a_point_or_with_too_many_are_none() {
+    let ball =
+        |radius: f64| Solid::Primitive(Primitive::Ball(radius), Placement::at(Vec3::zeros()));
+    let line = |unit: Solid, from: f64, to: f64| {
+        let region = (Vec3::repeat(from), Vec3::repeat(to));
+        Repeat::new(unit, vec![Vec3::y()], region)
+    };
+    assert!(line(ball(0.3), 0.2, 0.8).is_err());
+    assert!(line(ball(0.3), 0.2, 1e6).is_err());
+    assert!(line(ball(40.0), 0.2, 1.8).is_err());
+    let units = line(ball(0.3), 0.2, 1.8).unwrap();
+    let twice = Solid::Repeat(Box::new(units), Placement::at(Vec3::zeros()));
+    assert!(line(twice, 0.2, 1.8).is_err());
+    let nowhere = (Vec3::zeros(), Vec3::zeros());
+    assert!(Repeat::new(ball(0.3), vec![Vec3::y(), Vec3::y()], nowhere).is_err());
 }

@@ -11,6 +11,17 @@ choices! {
         /// Whatever is best.
         Auto,
     }
+    /// Lattices on which a shape is repeated.
+    RepeatName {
+        /// Points of a line.
+        Line,
+        /// Squares of a plane.
+        Square,
+        /// Triangles of a plane, whose cells are hexagons.
+        Hexagonal,
+        /// Cubes.
+        Cubic,
+    }
     /// Side of a surface.
     SideName {
         /// Outside, as of a punch.

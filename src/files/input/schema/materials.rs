@@ -212,6 +212,33 @@ macro_rules! strength_laws {
                 /// Largest equivalent stress of the deviator of what is pressed.
                 crush_stress: Placed<Pressure> = "0", NotNegative => "no limit";
             }
+            /// `strength.uncoupled`: yarns or walls along directions of the matter's own, each for itself.
+            uncoupled: UncoupledParams => Uncoupled {
+                /// Young's modulus of members along direction 1.
+                e1: Placed<Pressure>, Positive;
+                /// Young's modulus of those along direction 2.
+                e2: Placed<Pressure> = "0", NotNegative => "none";
+                /// Young's modulus of those along direction 3.
+                e3: Placed<Pressure> = "0", NotNegative => "none";
+                /// Shear modulus of 1 and 2.
+                g12: Placed<Pressure> = "0", NotNegative => "none";
+                /// Shear modulus of 1 and 3.
+                g13: Placed<Pressure> = "0", NotNegative => "none";
+                /// Shear modulus of 2 and 3.
+                g23: Placed<Pressure> = "0", NotNegative => "none";
+                /// Stress at which members along direction 1 crush.
+                c1: Placed<Pressure> = "0", NotNegative => "they buckle and bear none";
+                /// Stress at which those along direction 2 crush.
+                c2: Placed<Pressure> = "0", NotNegative => "they buckle and bear none";
+                /// Stress at which those along direction 3 crush.
+                c3: Placed<Pressure> = "0", NotNegative => "they buckle and bear none";
+                /// Strength against shear of 1 and 2.
+                s12: Placed<Pressure> = "0", NotNegative => "none";
+                /// Strength against shear of 1 and 3.
+                s13: Placed<Pressure> = "0", NotNegative => "none";
+                /// Strength against shear of 2 and 3.
+                s23: Placed<Pressure> = "0", NotNegative => "none";
+            }
             /// `strength.von_mises`: elastic–plastic.
             von_mises: VonMisesParams => VonMises {
                 /// Shear modulus.
@@ -516,6 +543,21 @@ macro_rules! failure_laws {
                 gf3: Placed<FractureEnergy> = "0", NotNegative => "fails at once";
                 /// How tension and shear go together.
                 criterion: Spanned<Criterion> = Criterion::Hashin;
+            }
+            /// `failure.uncoupled`: yarns or walls that tear.
+            uncoupled: UncoupledFailureParams => UncoupledFailure {
+                /// Strength against tension along direction 1.
+                t1: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against tension along direction 2.
+                t2: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Strength against tension along direction 3.
+                t3: Placed<Pressure> = "0", NotNegative => "no limit";
+                /// Energy that tears the members along direction 1.
+                gf1: Placed<FractureEnergy> = "0", NotNegative => "torn at once";
+                /// Energy that tears those along direction 2.
+                gf2: Placed<FractureEnergy> = "0", NotNegative => "torn at once";
+                /// Energy that tears those along direction 3.
+                gf3: Placed<FractureEnergy> = "0", NotNegative => "torn at once";
             }
             /// `failure.grady_kipp`: cracks that grow from flaws.
             grady_kipp: GradyKippParams => GradyKipp {

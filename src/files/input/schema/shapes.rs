@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::{AxisParams, MeshFileParams, Point, TurnsParams};
+use super::{AxisParams, MeshFileParams, Point, RepeatName, TurnsParams};
 use crate::input::quantity::{Angle, Extent, Placed};
 
 tables! {
@@ -35,6 +35,8 @@ tables! {
         intersection: Option<Spanned<Vec<Spanned<ShapeParams>>>>;
         /// What the first of some shapes holds and none of the others.
         difference: Option<Spanned<Vec<Spanned<ShapeParams>>>>;
+        /// A shape over and over at the points of a lattice.
+        repeat: Option<Spanned<RepeatParams>>;
         /// Turns it.
         turn: Option<Spanned<TurnsParams>> => "none";
         /// Moves it, once it is turned.
@@ -150,9 +152,29 @@ tables! {
         /// Direction of the length.
         axis: Option<Spanned<AxisParams>> => "z";
         /// Corners of the section.
-        corners: Spanned<Vec<Point>>;
+        corners: Option<Spanned<Vec<Point>>>;
+        /// Sides of a regular section, in place of `corners`; the first of them faces the first direction across the axis.
+        sides: Option<Spanned<i64>>, AtLeast(3);
+        /// Diameter of the circle that touches these sides: of a hexagon its width across flats.
+        across_flats: Option<Spanned<Extent>>;
         /// Length along the axis; none in two dimensions.
         length: Option<Spanned<Extent>>;
+    }
+
+    /// `shape.repeat`: a shape with its origin at each point of a lattice through the origin.
+    RepeatParams {
+        /// The shape.
+        unit: Box<Spanned<ShapeParams>>;
+        /// Points along a line, in squares or triangles of a plane, or in cubes.
+        lattice: Spanned<RepeatName>;
+        /// From point to nearest point.
+        cell: Spanned<Extent>;
+        /// Direction of a line, or across a plane, in which a row runs along x if that is in it.
+        axis: Option<Spanned<AxisParams>> => "z, of a line x";
+        /// Smallest coordinates of points.
+        lower: Point;
+        /// Largest coordinates of points; those along which the lattice does not go do not count.
+        upper: Point;
     }
 
     /// `turn` of a shape

@@ -226,6 +226,16 @@ fn has_failure_strain(failure: &Failure) -> bool {
         || failure.riedel_hiermaier_thoma.is_some()
 }
 
+/// True if there is another law than that of members, or options of another.
+fn tears_otherwise(failure: &Failure) -> bool {
+    let others = Failure {
+        uncoupled: None,
+        ..*failure
+    };
+    let options = &failure.options;
+    !others.is_none() || options.softens() || options.effect != Effect::StrengthLost
+}
+
 /// Why a strength cannot fail that way.
 fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static str> {
     let unscaled = matches!(strength, Strength::NeoHookean(_) | Strength::Viscous(_));
@@ -250,6 +260,10 @@ fn against_strength(failure: &Failure, strength: &Strength) -> Option<&'static s
         Some("`riedel_hiermaier_thoma` damages the strength of that name alone")
     } else if failure.hashin.is_some() && !matches!(strength, Strength::Orthotropic(_)) {
         Some("`hashin` cracks matter of the strength `orthotropic` alone")
+    } else if failure.uncoupled.is_some() && !matches!(strength, Strength::Uncoupled(_)) {
+        Some("`uncoupled` tears matter of the strength of that name alone")
+    } else if matches!(strength, Strength::Uncoupled(_)) && tears_otherwise(failure) {
+        Some("matter of the strength `uncoupled` tears by the failure of that name alone")
     } else if matches!(strength, Strength::Orthotropic(_)) && failure.spall.is_some() {
         Some("`spall` knows no directions: the strengths of `hashin` tell the largest tension")
     } else if matches!(strength, Strength::Orthotropic(_))

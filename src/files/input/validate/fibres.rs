@@ -9,24 +9,27 @@ use model::{Body, Case, FibrePattern, Fibres, Layup, SymmetryPlane, Vec3};
 
 /// Cosine of the angle within which two directions are one, or a sine within which they are across.
 const CLOSE: f64 = 1e-9;
+/// A plate is at most this part as thick as it is wide.
+const THIN: f64 = 1.0 / 3.0;
+/// Least particles across a layer of yarns or walls; rounding may take a hundredth.
+const LAYER: f64 = 3.0;
 
 /// Gives its directions to every body whose matter has some.
 pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Diagnostic> {
     let (dimension, symmetry) = (case.dimension, case.symmetry.clone());
-    let has_directions: Vec<bool> = (case
-        .bodies
-        .iter()
-        .map(|body| case.materials[body.material].has_directions()))
-    .collect();
+    let kinds: Vec<[bool; 2]> = (case.bodies.iter())
+        .map(|body| &case.materials[body.material])
+        .map(|material| [material.has_directions(), material.has_members()])
+        .collect();
     let absorbed: Vec<usize> = (case.loads.absorbers.iter().map(|zone| zone.body)).collect();
-    let bodies = case.bodies.iter_mut().zip(params).zip(has_directions);
-    for (number, ((body, table), has_directions)) in bodies.enumerate() {
+    let bodies = case.bodies.iter_mut().zip(params).zip(kinds);
+    for (number, ((body, table), [has_directions, has_members])) in bodies.enumerate() {
         let stated = table.get_ref().fibres.as_ref();
         if !has_directions || body.rigid.is_some() {
             if let Some(stated) = stated {
                 let title = format!("the matter of `{}` has no directions of its own", body.name);
                 return Err(Diagnostic::new(stated.span(), title)
-                    .help("that of `strength.orthotropic` has"));
+                    .help("that of `strength.orthotropic` and `strength.uncoupled` has"));
             }
             continue;
         }
@@ -39,7 +42,18 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
             );
             return Err(Diagnostic::new(at, title));
         }
-        let fibres = stated.map_or_else(|| Ok(DEFAULT), |table| fibres(table, dimension))?;
+        let across = if has_members {
+            across(body, dimension)
+        } else {
+            Vec3::z()
+        };
+        let fibres = stated.map_or_else(
+            || Ok(straight(across)),
+            |table| fibres(table, &across, dimension),
+        )?;
+        if has_members {
+            check_layer(body, table.get_ref(), &fibres, dimension)?;
+        }
         if let Some(plane) = symmetry.iter().find(|plane| !keeps(&fibres, plane)) {
             let title = format!(
                 "the symmetry plane across {} does not mirror the directions of `{}`",
@@ -55,15 +69,71 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
     Ok(())
 }
 
-/// Direction 1 along x, 3 along z.
-const DEFAULT: Fibres = Fibres {
-    pattern: FibrePattern::Straight,
-    along: Vec3::new(1.0, 0.0, 0.0),
-    normal: Vec3::new(0.0, 0.0, 1.0),
-    centre: Vec3::new(0.0, 0.0, 0.0),
-    angle: 0.0,
-    layup: None,
-};
+/// Direction 1 along x where 3 is not.
+fn beside(normal: &Vec3) -> Vec3 {
+    if normal.x.abs() > 0.9 {
+        Vec3::y()
+    } else {
+        Vec3::x()
+    }
+}
+
+/// Direction 3 along an axis, 1 beside it.
+fn straight(normal: Vec3) -> Fibres {
+    Fibres {
+        pattern: FibrePattern::Straight,
+        along: beside(&normal),
+        normal,
+        centre: Vec3::zeros(),
+        angle: 0.0,
+        layup: None,
+    }
+}
+
+/// Across the plate that a body is; z of any other.
+fn across(body: &Body, dimension: usize) -> Vec3 {
+    let unit = |a: usize| Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
+    let mut sides: Vec<(f64, usize)> = (0..dimension)
+        .map(|a| (body.thickness_along(&unit(a), dimension), a))
+        .collect();
+    sides.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (thin, axis) = sides[0];
+    let is_plate = sides.get(1).is_none_or(|(wide, _)| thin <= THIN * wide);
+    if is_plate { unit(axis) } else { Vec3::z() }
+}
+
+/// Direction 3 of a body whose matter may have some, as `fibres` says or as it is a plate.
+pub fn normal(
+    stated: Option<&Spanned<FibresParams>>,
+    body: &Body,
+    dimension: usize,
+) -> Result<Vec3, Diagnostic> {
+    match stated.and_then(|table| table.get_ref().normal.as_ref()) {
+        Some(normal) => axis_vector(Some(normal)),
+        None => Ok(across(body, dimension)),
+    }
+}
+
+/// A layer of yarns or walls has three particles across it.
+fn check_layer(
+    body: &Body,
+    params: &BodyParams,
+    fibres: &Fibres,
+    dimension: usize,
+) -> Result<(), Diagnostic> {
+    if fibres.pattern != FibrePattern::Straight || body.cloud().is_some() {
+        return Ok(());
+    }
+    let count = body.thickness_along(&fibres.normal, dimension) / body.lattice.spacing;
+    if count >= LAYER - 0.01 {
+        return Ok(());
+    }
+    let title = format!(
+        "`{}` is {count:.1} particles thick: a layer of yarns or walls has three at least",
+        body.name
+    );
+    Err(Diagnostic::new(params.form_span(), title).help("make its spacing finer"))
+}
 
 /// What is elastic along directions begins without stress.
 fn refuse_stress(body: &Body, params: &BodyParams) -> Result<(), Diagnostic> {
@@ -80,7 +150,11 @@ fn refuse_stress(body: &Body, params: &BodyParams) -> Result<(), Diagnostic> {
     Err(Diagnostic::new(at, title))
 }
 
-fn fibres(table: &Spanned<FibresParams>, dimension: usize) -> Result<Fibres, Diagnostic> {
+fn fibres(
+    table: &Spanned<FibresParams>,
+    plate: &Vec3,
+    dimension: usize,
+) -> Result<Fibres, Diagnostic> {
     let params = table.get_ref();
     let pattern = params.pattern.unwrap_or_default();
     let straight = pattern == FibrePattern::Straight;
@@ -108,12 +182,13 @@ fn fibres(table: &Spanned<FibresParams>, dimension: usize) -> Result<Fibres, Dia
     } else {
         &params.axis
     };
-    let normal = axis_vector(third.as_ref())?;
+    let normal = match third {
+        None if straight => *plate,
+        third => axis_vector(third.as_ref())?,
+    };
     let first = match &params.along {
         Some(along) => axis_vector(Some(along))?,
-        // Whatever is across the axis.
-        None if !straight && normal.x.abs() > 0.9 => Vec3::y(),
-        None => Vec3::x(),
+        None => beside(&normal),
     };
     let across = first - normal * first.dot(&normal);
     if across.norm() < 1e-3 {

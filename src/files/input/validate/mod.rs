@@ -4,6 +4,7 @@
 pub(super) mod check;
 mod absorbers;
 mod across;
+mod areal;
 mod bodies;
 mod contact;
 mod defaults;
@@ -124,6 +125,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
 
 /// Reads what asks a case, and checks what does not go together in it.
 fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
+    areal::resolve(case, &params.body)?;
     loading::resolve(case, &params.body)?;
     case.loads.self_gravity = self_gravity::self_gravity(case, params)?;
     initial::resolve(case, &params.body)?;

@@ -101,7 +101,7 @@ pub fn placed(form: Primitive, axis: &Vec3, centre: Vec3) -> Shape {
 }
 
 /// The matrix that turns z into a unit vector.
-fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
+pub(super) fn onto(axis: &Vec3) -> nalgebra::Matrix3<f64> {
     let along = Axis::ALL.into_iter().find(|a| axis[a.index()].abs() == 1.0);
     let Some(along) = along else {
         let across = Vec3::z().cross(axis);
@@ -153,6 +153,7 @@ impl Shapes<'_> {
             union: 2 "a box" union;
             intersection: 2 "a box" intersection;
             difference: 2 "a box" difference;
+            repeat: 2 "a box" repeat;
         }
         let mut forms = forms.into_iter();
         match (forms.next(), forms.next()) {
@@ -160,7 +161,7 @@ impl Shapes<'_> {
             _ => Err(Diagnostic::new(
                 table.span(),
                 "`shape` must have exactly one of `box`, `sphere`, `cylinder`, `ellipsoid`, `cone`, \
-                 `ogive`, `torus`, `prism`, `stl`, `obj`, `union`, `intersection`, `difference`",
+                 `ogive`, `torus`, `prism`, `stl`, `obj`, `union`, `intersection`, `difference`, `repeat`",
             )),
         }
     }

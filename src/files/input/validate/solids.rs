@@ -4,14 +4,14 @@ use toml::Spanned;
 
 use super::check::required;
 use super::meshes::MeshReader;
-use super::shapes::{Shapes, axis_vector, placed};
+use super::shapes::{Shapes, axis_vector, onto, placed};
 use crate::input::schema::{
-    ConeParams, EllipsoidParams, MeshFileParams, OgiveParams, PrismParams, ShapeParams,
-    TorusParams, TurnsParams, TurnsTable,
+    ConeParams, EllipsoidParams, MeshFileParams, OgiveParams, Point, PrismParams, RepeatName,
+    RepeatParams, ShapeParams, TorusParams, TurnsParams, TurnsTable,
 };
 use crate::input::source::Diagnostic;
 use crate::input::triangles::Format;
-use model::{Placement, Polygon, Primitive, Shape, Solid, Vec3, rotation};
+use model::{Placement, Polygon, Primitive, Repeat, Shape, Solid, Vec3, rotation};
 
 /// Most corners of a polygon, and most shapes together.
 const MOST_CORNERS: usize = 10_000;
@@ -97,21 +97,19 @@ impl Shapes<'_> {
     pub(super) fn prism(&self, table: &Spanned<PrismParams>) -> Result<Shape, Diagnostic> {
         let params = table.get_ref();
         let centre = self.point(params.centre.as_ref(), "centre")?;
-        let corners = params.corners.get_ref();
-        let refuse = |title: &str| Err(Diagnostic::new(params.corners.span(), title));
-        if corners.len() > MOST_CORNERS {
-            return refuse("a polygon may have 10000 corners at most");
-        }
-        let flat = Self {
-            dimension: 2,
-            ..*self
-        };
-        let outline: Result<Vec<[f64; 2]>, Diagnostic> = corners
-            .iter()
-            .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))
-            .collect();
-        let Some(section) = Polygon::new(outline?) else {
-            return refuse("`corners` must be those of a polygon whose edges do not cross");
+        let section = match (&params.corners, &params.sides) {
+            (Some(corners), None) => self.polygon(corners)?,
+            (None, Some(_)) => self.regular(params, table)?,
+            (Some(_), Some(twice)) => {
+                let title = "a prism has `corners`, or `sides` that are alike, not both";
+                return Err(Diagnostic::new(twice.span(), title));
+            }
+            (None, None) => {
+                let title = "the key `corners` is missing";
+                return Err(Diagnostic::new(table.span(), title)
+                    .label("in this table")
+                    .help("or give it `sides` that are alike"));
+            }
         };
         let half = match (&params.length, self.dimension) {
             (Some(length), 3) => 0.5 * self.positive(length, "length")?,
@@ -131,6 +129,53 @@ impl Shapes<'_> {
             return Err(Diagnostic::new(given.span(), title));
         }
         Ok(placed(Primitive::Prism { section, half }, &axis, centre))
+    }
+
+    /// The section of a prism by its corners.
+    fn polygon(&self, corners: &Spanned<Vec<Point>>) -> Result<Polygon, Diagnostic> {
+        let refuse = |title: &str| Err(Diagnostic::new(corners.span(), title));
+        if corners.get_ref().len() > MOST_CORNERS {
+            return refuse("a polygon may have 10000 corners at most");
+        }
+        let flat = Self {
+            dimension: 2,
+            ..*self
+        };
+        let outline: Result<Vec<[f64; 2]>, Diagnostic> = (corners.get_ref().iter())
+            .map(|corner| flat.point(Some(corner), "corners").map(|x| [x.x, x.y]))
+            .collect();
+        match Polygon::new(outline?) {
+            Some(section) => Ok(section),
+            None => refuse("`corners` must be those of a polygon whose edges do not cross"),
+        }
+    }
+
+    /// A regular section of a prism, whose first side faces the first direction.
+    fn regular(
+        &self,
+        params: &PrismParams,
+        table: &Spanned<PrismParams>,
+    ) -> Result<Polygon, Diagnostic> {
+        let sides = params.sides()?.unwrap_or(0);
+        let across = (params.across_flats.as_ref())
+            .map(|across| self.positive(across, "across_flats"))
+            .transpose()?;
+        let across = required(across, "across_flats", &table.span())?;
+        let refuse = |title: &str| {
+            let at = params.sides.as_ref().map_or(table.span(), Spanned::span);
+            Diagnostic::new(at, title)
+        };
+        let count = u32::try_from(sides).unwrap_or(u32::MAX);
+        if count as usize > MOST_CORNERS {
+            return Err(refuse("a polygon may have 10000 corners at most"));
+        }
+        let half = std::f64::consts::PI / f64::from(count);
+        let radius = 0.5 * across / libm::cos(half);
+        let corner = |n: u32| {
+            let angle = f64::from(2 * n + 1) * half;
+            [radius * libm::cos(angle), radius * libm::sin(angle)]
+        };
+        Polygon::new((0..count).map(corner).collect()).ok_or_else(|| refuse("no polygon"))
     }
 
     pub(super) fn stl(&self, table: &Spanned<MeshFileParams>) -> Result<Shape, Diagnostic> {
@@ -164,6 +209,58 @@ impl Shapes<'_> {
         let mut cuts = self.parts(parts)?;
         let base = Box::new(cuts.remove(0));
         Ok(Shape::Solid(Solid::Difference(base, cuts)))
+    }
+
+    /// A shape at the points of a lattice.
+    pub(super) fn repeat(&self, table: &Spanned<RepeatParams>) -> Result<Shape, Diagnostic> {
+        let params = table.get_ref();
+        let lattice = *params.lattice.get_ref();
+        let cell = self.positive(&params.cell, "cell")?;
+        let refuse = |at: std::ops::Range<usize>, title: &str| Err(Diagnostic::new(at, title));
+        let is_line = lattice == RepeatName::Line;
+        let axis = match &params.axis {
+            None if is_line => Vec3::x(),
+            axis => axis_vector(axis.as_ref())?,
+        };
+        if let Some(given) = &params.axis
+            && (lattice == RepeatName::Cubic
+                || self.dimension == 2
+                    && if is_line {
+                        axis.z != 0.0
+                    } else {
+                        axis.z.abs() != 1.0
+                    })
+        {
+            return refuse(given.span(), "this lattice has no such `axis`");
+        }
+        if lattice == RepeatName::Cubic && self.dimension == 2 {
+            return refuse(
+                params.lattice.span(),
+                "in two dimensions cubes are squares: \"square\"",
+            );
+        }
+        let turn = onto(&axis);
+        let [first, second] = [Vec3::x(), Vec3::y()].map(|way| turn * way * cell);
+        let steps = match lattice {
+            RepeatName::Line => vec![axis * cell],
+            RepeatName::Square => vec![first, second],
+            RepeatName::Hexagonal => {
+                let aslant = first * 0.5 + second * (0.5 * 3.0_f64.sqrt());
+                vec![first, aslant]
+            }
+            RepeatName::Cubic => [Vec3::x(), Vec3::y(), Vec3::z()]
+                .map(|way| way * cell)
+                .to_vec(),
+        };
+        let region = (
+            self.point(Some(&params.lower), "lower")?,
+            self.point(Some(&params.upper), "upper")?,
+        );
+        let unit = self.shape(&params.unit)?.solid(self.dimension);
+        let units = Repeat::new(unit, steps, region)
+            .map_err(|title| Diagnostic::new(table.span(), title))?;
+        let place = Placement::at(Vec3::zeros());
+        Ok(Shape::Solid(Solid::Repeat(Box::new(units), place)))
     }
 
     fn parts(&self, parts: &Parts) -> Result<Vec<Solid>, Diagnostic> {
