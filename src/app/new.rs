@@ -39,6 +39,10 @@ pub struct NewArgs {
 enum Kind {
     /// A sphere through a bumper, its debris on a rear wall
     Shield,
+    /// The same with cloth half way between them
+    Stuffed,
+    /// A sphere on a panel of honeycomb between sheets of carbon fibres
+    Honeycomb,
     /// A sphere on a thick target, which absorbing zones let go on for ever
     Crater,
     /// A sphere through a thin plate: how large a hole it makes
@@ -68,6 +72,8 @@ impl Kind {
         }
         match self {
             Self::Shield => ready!("whipple-shield"),
+            Self::Stuffed => ready!("stuffed-shield"),
+            Self::Honeycomb => ready!("honeycomb-panel"),
             Self::Crater => ready!("crater"),
             Self::Plate => ready!("bumper-hole"),
             Self::Oblique => ready!("oblique-30"),

@@ -11,8 +11,10 @@ fn whipple(arguments: &[&str]) -> Ended {
     end(command(WHIPPLE).args(arguments))
 }
 
-const KINDS: [&str; 10] = [
+const KINDS: [&str; 12] = [
     "shield",
+    "stuffed",
+    "honeycomb",
     "crater",
     "plate",
     "oblique",
@@ -32,7 +34,10 @@ fn every_kind_makes_a_sound_case() {
         let made = whipple(&["new", case.to_str().unwrap(), "--from", kind]);
         made.with_code(0);
         let checked = whipple(&["check", case.to_str().unwrap()]).with_code(0);
-        assert!(checked.stdout.contains("sound"), "{kind}");
+        // Coarse enough to be paid for: `check` warns.
+        let is_coarse = ["stuffed", "honeycomb"].contains(&kind);
+        let word = if is_coarse { "can run" } else { "sound" };
+        assert!(checked.stdout.contains(word), "{kind}");
     }
 }
 
