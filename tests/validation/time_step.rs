@@ -22,7 +22,7 @@ fn impacts_keep_their_outcome() {
             println!("  {what} off by {:.2} %", 1e2 * off);
             println!("  contact limits {} steps", outcome.contact_limited);
             assert!(outcome.energy_error <= 0.005 && off <= 0.005, "{what}");
-            // Two of 200 at .025 mm with the factors of other matter, where a pair meets again behind the front: a hundredth.
+            // Two of 200 at .025 mm with the factors of other matter: a hundredth.
             assert!(
                 50 * outcome.contact_limited <= outcome.steps,
                 "contact limited the step"
