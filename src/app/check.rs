@@ -136,6 +136,7 @@ fn draw(case: &Case, path: &Path, section: Option<&str>) -> Result<(), PlotError
 fn mass_of(case: &Case, body: &Body, count: u64) -> Option<f64> {
     // Bodies with equal particles have been counted.
     let shares = || match body.lattice.grading {
+        _ if case.axisymmetric => populate::rings(case, body),
         None => count as f64,
         Some(_) => populate::shares(body, case.dimension, &case.symmetry),
     };
@@ -148,7 +149,7 @@ fn mass(case: &Case, body: &Body, count: u64) -> String {
         return String::new();
     };
     let each = body.lattice.particle_volume(case.dimension);
-    let text = shown(mass, unit_of_model("kg", case.dimension));
+    let text = shown(mass, unit_of_model("kg", case.extent()));
     let cell = cube(body.lattice.spacing, case.dimension);
     let more = 100.0 * (each / cell - 1.0);
     if more == 0.0 {

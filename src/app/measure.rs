@@ -7,7 +7,7 @@ use super::output_format::{self, OutputFormat, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
+use engine::measure::{Findings, Matter, Revolved, Told, findings, mirrors, remember};
 use files::FileOpener;
 use files::input::{self, InputError};
 use files::output::h5::Content;
@@ -102,7 +102,9 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let mut remembered = match &first {
         Some(path) => {
             let first = Loaded::read(path, &args.set)?;
-            remember(&first.particles(), &comm)
+            let matter = first.particles();
+            let revolved = Revolved::of(&matter);
+            remember(&revolved.as_ref().map_or(matter, Revolved::matter), &comm)
         }
         None => Vec::new(),
     };
@@ -110,19 +112,16 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let mut text = String::new();
     for path in &paths {
         let loaded = Loaded::read(path, &args.set)?;
-        let measured = findings(
-            loaded.time,
-            &mut remembered,
-            None,
-            &loaded.particles(),
-            &comm,
-        );
+        let matter = loaded.particles();
+        let revolved = Revolved::of(&matter);
+        let matter = revolved.as_ref().map_or(matter, Revolved::matter);
+        let measured = findings(loaded.time, &mut remembered, None, &matter, &comm);
         text = report(&loaded, loaded.case.measure.measures.iter().zip(&measured));
         evaluated.push((loaded.case, loaded.time, measured));
     }
     let rows = evaluated.iter().flat_map(|(case, time, measured)| {
         let all = case.measure.measures.iter().zip(measured);
-        measures::figures(*time, all, case.dimension)
+        measures::figures(*time, all, case.extent())
     });
     let table = measures::table(&rows.collect::<Vec<_>>());
     if let Some(path) = &args.csv {
@@ -310,7 +309,7 @@ fn report<'a>(
         }
         let _ = writeln!(text, "{} ({})", measure.name, measure.kind.word());
         for figure in &findings.figures {
-            let unit = files::output::unit_of_model(figure.unit, loaded.case.dimension);
+            let unit = files::output::unit_of_model(figure.unit, loaded.case.extent());
             let value = match figure.value {
                 Told::Number(number) if number.is_nan() => "–".to_owned(),
                 Told::Number(number) => shown(number, unit),

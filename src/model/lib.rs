@@ -6,6 +6,7 @@
 
 mod absorber;
 mod axis;
+mod axisymmetric;
 mod beginning;
 mod body;
 mod closing_speeds;
@@ -87,6 +88,8 @@ pub struct Case {
     pub length_unit: Readable,
     /// Number of space dimensions: 1 (uniaxial strain), 2 (plane strain) or 3.
     pub dimension: usize,
+    /// True if the two dimensions are a radius and a place along the axis, about which all is the same: particles are rings.
+    pub axisymmetric: bool,
     /// Materials, in the order of the input.
     pub materials: Vec<Material>,
     /// Bodies, in the order of the input; a particle's `body` is an index into this.

@@ -28,6 +28,7 @@ impl Case {
         let term = sph.terms.acting().next();
         let term = term.map(|(_, key)| format!("`sph.{key}` needs the neighbours of each step"));
         let obstacles = [
+            (self.axisymmetric, "its particles are rings about an axis"),
             (own.rigid.is_some(), "it is rigid"),
             (
                 sph.form != SphForm::Corrected,

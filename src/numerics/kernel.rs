@@ -143,6 +143,8 @@ pub struct PairKernel<V> {
 pub trait PairScale: Copy + Sync {
     /// True if smoothing lengths differ.
     const VARIABLE: bool;
+    /// True if neighbours are rings about an axis, of which pairs see [points](crate::arc).
+    const RING: bool = false;
 
     /// `h_ij` (m) of receivers of `h_i` and neighbours of `h_j` (m).
     fn length<V: Lanes>(&self, h_i: V, h_j: V) -> V;
@@ -308,6 +310,43 @@ impl PairScale for MeanScale {
     fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
         let inverse = pairs.inverse_h;
         shape.mul(self.height(inverse, inverse, inverse.mul(inverse)))
+    }
+}
+
+/// `h_ij = ½(h_i + h_j)` between rings.
+#[derive(Debug, Clone, Copy)]
+pub struct RingScale(MeanScale);
+
+impl RingScale {
+    /// For a kernel.
+    #[must_use]
+    pub fn new(kernel: &Kernel) -> Self {
+        Self(MeanScale::new(kernel))
+    }
+}
+
+impl PairScale for RingScale {
+    const VARIABLE: bool = true;
+    const RING: bool = true;
+
+    #[inline(always)]
+    fn length<V: Lanes>(&self, h_i: V, h_j: V) -> V {
+        self.0.length(h_i, h_j)
+    }
+
+    #[inline(always)]
+    fn kernel<V: Lanes>(&self, distance: V, inverse_h: V) -> PairKernel<V> {
+        self.0.kernel(distance, inverse_h)
+    }
+
+    #[inline(always)]
+    fn shape<V: Lanes>(&self, pairs: &PairKernel<V>) -> V {
+        self.0.shape(pairs)
+    }
+
+    #[inline(always)]
+    fn value<V: Lanes>(&self, pairs: &PairKernel<V>, shape: V) -> V {
+        self.0.value(pairs, shape)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The numerical base: what knows nothing of particles, and gives the same bits on any machine.
 
 pub mod alone;
+pub mod arc;
 pub mod attitude;
 pub mod collector;
 pub mod counter;

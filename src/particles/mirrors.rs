@@ -1,12 +1,14 @@
 //! Symmetry planes: mirror images of particles behind them, and particles that cross them.
 
 use crate::{FieldInfo, Mirror, MirrorMask, ParticleStore};
-use model::SymmetryPlane;
+use model::{Case, SymmetryPlane};
 
 /// The symmetry planes of a case, at most one for each axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Mirrors {
     planes: [Option<f64>; 3],
+    /// True if the plane normal to x is an axis: what crosses it turns by half, and it has no images.
+    axis: bool,
 }
 
 /// Force of images behind symmetry planes on one particle.
@@ -32,6 +34,15 @@ impl Mirrors {
         mirrors
     }
 
+    /// The planes of a case; of rings about an axis the first of them is that axis.
+    #[must_use]
+    pub fn of(case: &Case) -> Self {
+        Self {
+            axis: case.axisymmetric,
+            ..Self::new(&case.symmetry)
+        }
+    }
+
     /// Coordinate (m) of the plane normal to an axis, if there is one.
     #[must_use]
     pub fn plane(&self, axis: usize) -> Option<f64> {
@@ -50,13 +61,20 @@ impl Mirrors {
         axes.fold(MirrorMask::OWN, MirrorMask::with).subsets(true)
     }
 
+    /// How often the sums of what is computed are in the whole: 1, 2, 4 or 8. What is about an axis is whole.
+    #[must_use]
+    pub fn copies(&self) -> u32 {
+        let planes = self.planes.iter().skip(usize::from(self.axis));
+        1 << planes.flatten().count()
+    }
+
     /// The planes that a particle at `position` (m) stands within `reach` (m) of. Its images are
     /// those behind all subsets of these planes.
     #[inline]
     #[must_use]
     pub fn near(&self, position: &[f64; 3], reach: f64) -> MirrorMask {
         let mut planes = MirrorMask::OWN;
-        for axis in 0..3 {
+        for axis in usize::from(self.axis)..3 {
             if let Some(plane) = self.planes[axis]
                 && position[axis] - plane <= reach
             {

@@ -32,7 +32,7 @@ pub use together::{counts, for_each_body};
 pub use touch::{touching_distance, touching_value};
 
 use filling::Filling;
-use model::{Axis, Body, LatticeKind, RigidSurface, SymmetryPlane};
+use model::{Axis, Body, Case, LatticeKind, RigidSurface, SymmetryPlane};
 use row::cuts;
 
 #[cfg(test)]
@@ -266,6 +266,13 @@ pub fn shares(body: &Body, dimension: usize, symmetry: &[SymmetryPlane]) -> f64 
         return count(body, dimension, symmetry, None) as f64;
     }
     Filling::of(body, dimension, symmetry).shares(&cuts(symmetry, None))
+}
+
+/// The sum of the circumferences (m) of all rings of a body of an axisymmetric case.
+#[must_use]
+pub fn rings(case: &Case, body: &Body) -> f64 {
+    let sites = sites(body, case.dimension, &case.symmetry, None);
+    sites.map(|site| case.around(&site.position)).sum()
 }
 
 /// `true` if sites are moved after bricks are cut: particles may begin a spacing outside the brick

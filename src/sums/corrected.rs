@@ -137,14 +137,13 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
         let (mut mean_velocity, mut place) = ([zero; 3], [zero; 3]);
         let mut square = zero;
         for pair in self.around.pairs(&position) {
-            let (here, r) = (pair.source, pair.separation.r);
-            let volume = V::splat(here.volume);
+            let (r, volume, there) = (pair.separation.r, pair.volume(), pair.velocity());
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             let steep = add_moment(&mut moment, &r, factor);
             let weight = factor.mul(pair.separation.square);
             square = pair.separation.square.mul_add(weight, square);
             for a in 0..3 {
-                let v_a = V::splat(here.velocity[a]).sub(velocity[a]);
+                let v_a = there[a].sub(velocity[a]);
                 mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
                 place[a] = r[a].mul_add(weight, place[a]);
                 for b in 0..3 {
@@ -153,6 +152,10 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
                 }
             }
         }
+        Neighbourhood::<S>::mirror_tensor(&mut gradient);
+        Neighbourhood::<S>::mirror_symmetric(&mut moment);
+        Neighbourhood::<S>::mirror(&mut mean_velocity);
+        Neighbourhood::<S>::mirror(&mut place);
         let [xx, yy, zz, ..] = moment;
         PlainSums {
             gradient,

@@ -34,10 +34,11 @@ impl<S: PairScale> Vectorised for FaceCorrection<'_, S> {
         let (position, _) = self.around.motion::<V>();
         let mut moment = [V::splat(0.0); 6];
         for pair in self.around.pairs(&position) {
-            let volume = V::splat(pair.source.volume);
+            let volume = pair.volume();
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             add_moment(&mut moment, &pair.separation.r, factor);
         }
+        Neighbourhood::<S>::mirror_symmetric(&mut moment);
         for axis in self.dimension..3 {
             moment[axis] = V::splat(1.0);
         }
@@ -71,7 +72,7 @@ impl<S: PairScale> Vectorised for Face<'_, S> {
         let (position, _) = self.around.motion::<V>();
         let (mut slope, mut sum) = ([zero; 3], [zero; 3]);
         for pair in self.around.pairs(&position) {
-            let volume = V::splat(pair.source.volume);
+            let volume = pair.volume();
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             let (r, mut other) = (pair.separation.r, [zero; 6]);
             for c in 0..6 {

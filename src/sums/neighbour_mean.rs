@@ -39,7 +39,7 @@ impl<S: PairScale> Vectorised for NeighbourMean<'_, S> {
                 continue;
             }
             let r = pair.separation.r;
-            let volume = V::splat(pair.source.volume);
+            let volume = pair.volume();
             let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
             let steep = add_moment(&mut moment, &r, factor);
             let weight = factor.mul(pair.separation.square);
@@ -51,6 +51,9 @@ impl<S: PairScale> Vectorised for NeighbourMean<'_, S> {
                 place[a] = weight.mul_add(r[a], place[a]);
             }
         }
+        Neighbourhood::<S>::mirror_symmetric(&mut moment);
+        Neighbourhood::<S>::mirror(&mut gradient);
+        Neighbourhood::<S>::mirror(&mut place);
         for axis in self.dimension..3 {
             moment[axis] = V::splat(1.0);
         }

@@ -1,6 +1,9 @@
 //! The receivers of one cluster with their neighbours: what all sums over pairs begin with.
 
-use numerics::kernel::{PairKernel, PairScale};
+use std::marker::PhantomData;
+
+use numerics::arc::{Arc, POINTS};
+use numerics::kernel::{PairKernel, PairScale, SUPPORT};
 use numerics::lanes::{LANES, Lanes};
 use particles::neighbours::MotionRecord;
 
@@ -103,8 +106,10 @@ impl<'a, S: PairScale> Neighbourhood<'a, S> {
             done: 0,
             next: Divided::of::<S>(Distance::of(one), one, None),
             after: Distance::of(one),
+            arc: Arc::none(),
+            point: 0,
         };
-        if !self.neighbours.is_empty() {
+        if !S::RING && !self.neighbours.is_empty() {
             // The compiler must not know how these come about: where they and those of the loop do alike, it
             // takes roots and divides behind the two, when the result is due.
             pairs.next = std::hint::black_box(pairs.divide(0, pairs.distance(0)));
@@ -127,8 +132,8 @@ impl<V> Divisor<V> for () {
     }
 }
 
-/// Eight receivers and one neighbour.
-pub(crate) struct Pair<'a, V> {
+/// Eight receivers and one neighbour, or one point of it that is a ring.
+pub(crate) struct Pair<'a, V, S> {
     /// Index of the neighbour among all sources.
     pub(crate) index: usize,
     /// The neighbour.
@@ -141,6 +146,96 @@ pub(crate) struct Pair<'a, V> {
     pub(crate) h: V,
     /// The inverse of the divisor, 1 without one.
     pub(crate) beside: V,
+    /// Where on a ring.
+    arc: Arc<V>,
+    scale: PhantomData<S>,
+}
+
+impl<V: Lanes, S: PairScale> Pair<'_, V, S> {
+    /// Volume of the neighbour (m^d), or what the point stands for of it.
+    #[inline(always)]
+    pub(crate) fn volume(&self) -> V {
+        let volume = V::splat(self.source.volume);
+        if S::RING {
+            volume.mul(self.arc.share)
+        } else {
+            volume
+        }
+    }
+
+    /// A vector of the neighbour, there.
+    #[inline(always)]
+    pub(crate) fn vector(&self, of: &[f64; 3]) -> [V; 3] {
+        let plain = [V::splat(of[0]), V::splat(of[1]), V::splat(of[2])];
+        if S::RING {
+            let [cosine, sine] = self.arc.turn();
+            [plain[0].mul(cosine), plain[1], plain[0].mul(sine)]
+        } else {
+            plain
+        }
+    }
+
+    /// Velocity of the neighbour there (m/s).
+    #[inline(always)]
+    pub(crate) fn velocity(&self) -> [V; 3] {
+        self.vector(&self.source.velocity)
+    }
+
+    /// A tensor of the neighbour (row-major), there; on a ring it has the plane and the ring's direction as axes.
+    #[inline(always)]
+    pub(crate) fn tensor(&self, of: &[f64; 9]) -> [V; 9] {
+        let mut plain = [V::splat(0.0); 9];
+        for c in 0..9 {
+            plain[c] = V::splat(of[c]);
+        }
+        if !S::RING {
+            return plain;
+        }
+        let [c, s] = self.arc.turn();
+        let [rr, ry, _, yr, yy, _, _, _, hoop] = plain;
+        let (cc, ss, cs) = (c.mul(c), s.mul(s), c.mul(s));
+        let across = cs.mul(rr.sub(hoop));
+        [
+            cc.mul_add(rr, ss.mul(hoop)),
+            c.mul(ry),
+            across,
+            c.mul(yr),
+            yy,
+            s.mul(yr),
+            across,
+            s.mul(ry),
+            ss.mul_add(rr, cc.mul(hoop)),
+        ]
+    }
+}
+
+impl<S: PairScale> Neighbourhood<'_, S> {
+    /// Takes out of the sum of a vector over the points of rings what their mirror images cancel.
+    #[inline(always)]
+    pub(crate) fn mirror<V: Lanes>(vector: &mut [V; 3]) {
+        if S::RING {
+            vector[2] = V::splat(0.0);
+        }
+    }
+
+    /// The same of a tensor (row-major).
+    #[inline(always)]
+    pub(crate) fn mirror_tensor<V: Lanes>(tensor: &mut [V; 9]) {
+        if S::RING {
+            for c in [2, 5, 6, 7] {
+                tensor[c] = V::splat(0.0);
+            }
+        }
+    }
+
+    /// The same of a symmetric tensor (xx yy zz xy xz yz).
+    #[inline(always)]
+    pub(crate) fn mirror_symmetric<V: Lanes>(tensor: &mut [V; 6]) {
+        if S::RING {
+            tensor[4] = V::splat(0.0);
+            tensor[5] = V::splat(0.0);
+        }
+    }
 }
 
 /// Pairs of eight receivers, neighbour after neighbour. Roots are begun two neighbours ahead and divisions one:
@@ -153,6 +248,9 @@ pub(crate) struct Pairs<'a, V, S, D: Divisor<V>> {
     done: usize,
     next: Divided<V>,
     after: Distance<V>,
+    /// The point in hand of a ring, and its number.
+    arc: Arc<V>,
+    point: usize,
 }
 
 impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
@@ -183,10 +281,45 @@ impl<V: Lanes, S: PairScale, D: Divisor<V>> Pairs<'_, V, S, D> {
         let h = scale.length(self.h, V::splat(length::<S>(lengths, index)));
         Divided::of::<S>(far, h, self.divisor.of(index, far.square, h))
     }
+
+    /// The next point of a ring.
+    #[inline(always)]
+    fn on_ring(&mut self) -> (Separation<V>, Divided<V>) {
+        let index = self.index(0);
+        let Sources {
+            records,
+            lengths,
+            scale,
+        } = self.around.sources;
+        let h = scale.length(self.h, V::splat(length::<S>(lengths, index)));
+        let [x, y, _] = self.apart(index);
+        let radii = [self.position[0], V::splat(records[index].position[0])];
+        let flat = y.mul_add(y, x.mul(x));
+        if self.point == 0 {
+            self.arc = Arc::new(radii, flat, h.mul(V::splat(SUPPORT)));
+        } else {
+            self.arc.advance();
+        }
+        self.point += 1;
+        if self.point == POINTS {
+            self.point = 0;
+            self.done += 1;
+        }
+        let far = Distance::of(self.arc.square(radii, flat));
+        let divided = Divided::of::<S>(far, h, self.divisor.of(index, far.square, h));
+        let [x, z] = self.arc.apart(radii[0], radii[1]);
+        let separation = Separation {
+            r: [x, y, z],
+            square: far.square,
+            distance: far.distance,
+            inverse: divided.inverse,
+        };
+        (separation, divided)
+    }
 }
 
 impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> {
-    type Item = Pair<'a, V>;
+    type Item = Pair<'a, V, S>;
 
     #[inline(always)]
     fn next(&mut self) -> Option<Self::Item> {
@@ -199,6 +332,19 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
             return None;
         }
         let (index, now) = (self.index(0), self.next);
+        if S::RING {
+            let (separation, now) = self.on_ring();
+            return Some(Pair {
+                index,
+                source: &records[index],
+                kernel: scale.kernel(separation.distance, now.inverse_h),
+                separation,
+                h: scale.length(self.h, V::splat(length::<S>(lengths, index))),
+                beside: now.beside,
+                arc: self.arc,
+                scale: PhantomData,
+            });
+        }
         let Distance { square, distance } = now.far;
         self.next = self.divide(1, self.after);
         self.after = self.distance(2);
@@ -215,6 +361,8 @@ impl<'a, V: Lanes, S: PairScale, D: Divisor<V>> Iterator for Pairs<'a, V, S, D> 
             kernel: scale.kernel(distance, now.inverse_h),
             h: scale.length(self.h, V::splat(length::<S>(lengths, index))),
             beside: now.beside,
+            arc: self.arc,
+            scale: PhantomData,
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The pair scale of a case.
 
-use numerics::kernel::{ConstantScale, Kernel, MeanScale};
+use numerics::kernel::{ConstantScale, Kernel, MeanScale, RingScale};
 
 /// The pair scale of a case, chosen once.
 #[derive(Debug, Clone, Copy)]
@@ -9,6 +9,8 @@ pub enum Scale {
     Constant(ConstantScale),
     /// Mean lengths of pairs.
     Mean(MeanScale),
+    /// The same between rings about an axis.
+    Ring(RingScale),
 }
 
 impl Scale {
@@ -29,6 +31,7 @@ macro_rules! with_scale {
         match $scale {
             $crate::scale::Scale::Constant($name) => $work,
             $crate::scale::Scale::Mean($name) => $work,
+            $crate::scale::Scale::Ring($name) => $work,
         }
     };
 }

@@ -50,7 +50,7 @@ pub(super) fn document(
         "disk": files.map(|files| files.disk()),
         "warnings": warnings,
         "units": {
-            "mass": unit_of_model("kg", case.dimension),
+            "mass": unit_of_model("kg", case.extent()),
             "areal_density": "kg/m^2",
             "spacing": "m",
             "smoothing_length": "m",

@@ -70,6 +70,12 @@ impl ContactStress {
         }
     }
 
+    /// Leaves out what pairs of points of rings cancel.
+    pub fn mirror(&mut self) {
+        let [.., xz, yz] = &mut self.virial.0;
+        (*xz, *yz, self.press[2]) = (0.0, 0.0, 0.0);
+    }
+
     pub fn join(&mut self, other: &Self) {
         self.virial.join(&other.virial);
         for a in 0..3 {
@@ -156,16 +162,15 @@ impl<'a> Receiver<'a> {
         body.heat += heat;
     }
 
-    /// Viscosity of the pair with `other`, which approaches: `drag` (N).
+    /// Viscosity of the pair with `other`, which approaches: `drag` (N), which is `force` (N).
     #[inline]
     pub fn brake(
         &mut self,
         other: &ContactParticle,
-        separation: &Separation,
+        (separation, force): (&Separation, &[f64; 3]),
         drag: f64,
         pair: &Pair,
     ) {
-        let force = separation.along(drag);
         for a in 0..3 {
             self.sum.drag[a] += force[a];
         }
@@ -173,7 +178,7 @@ impl<'a> Receiver<'a> {
         self.sum.heat += pair.heat_share * (drag * approach);
         // Its matrix has the two on its diagonal and off it.
         self.sum.dashpot += 2.0 * drag / approach;
-        self.exert(other, &force);
+        self.exert(other, force);
     }
 
     /// Books a force (N) of `other` by where that stands and by its body; gives what is by this body.

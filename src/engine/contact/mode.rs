@@ -44,14 +44,14 @@ pub(crate) trait Mode: Listed + Sized {
         load: &mut NormalLoad,
     ) {
         let here = Self::side(view, i);
-        for &other in neighbours {
-            let j = view.particle(other);
+        for (_, j) in view.others(i, neighbours) {
             let pair = ParticlePair::<Self>::new(view, [i, &j], here);
             if !pair.constants.friction.is_any() {
                 continue;
             }
             if let Some(PairForce { force, loads, .. }) = Self::force(&pair, &mut 0.0) {
-                let force = force.map(|f| 0.5 * f);
+                let mut force = force.map(|f| 0.5 * f);
+                view.mirror(&mut force);
                 load.add(pair.constants, [i, &j], loads[0], &force);
                 load.face(1.0, &force);
             }
@@ -170,8 +170,7 @@ impl TaskForces {
             let rate = view.stiffening_rate(&i);
             let mut on = Receiver::new(&i, neighbours.len(), &mut self.by_body);
             let mut friction = FRICTION.then(|| PairFriction::of(view, &i));
-            for &other in neighbours {
-                let j = view.particle(other);
+            for (_, j) in view.others(&i, neighbours) {
                 let pair = ParticlePair::<M>::new(view, [&i, &j], here);
                 on.meet(&j, &pair.separation, pair.constants);
                 let Some(mut exerted) = M::force(&pair, &mut on.sum.stiffness) else {
@@ -183,9 +182,12 @@ impl TaskForces {
                     exerted.resist(friction);
                     heat += friction.heat;
                 }
+                view.mirror(&mut exerted.force);
                 on.add(&j, &exerted.force, exerted.energy, heat);
                 if exerted.drag > 0.0 {
-                    on.brake(&j, &pair.separation, exerted.drag, pair.constants);
+                    let mut drag = pair.separation.along(exerted.drag);
+                    view.mirror(&mut drag);
+                    on.brake(&j, (&pair.separation, &drag), exerted.drag, pair.constants);
                 }
             }
             if let Some(friction) = friction {
@@ -208,8 +210,7 @@ fn stress_of_mode<M: Mode>(
     let here = M::side(view, i);
     let mut friction = with_friction.then(|| PairFriction::of(view, i));
     let mut carried = ContactStress::default();
-    for &other in neighbours {
-        let j = view.particle(other);
+    for (_, j) in view.others(i, neighbours) {
         let pair = ParticlePair::<M>::new(view, [i, &j], here);
         if let Some(mut exerted) = M::force(&pair, &mut 0.0) {
             let press = exerted.force;
@@ -220,6 +221,9 @@ fn stress_of_mode<M: Mode>(
             let arm = pair.separation.r.map(|x| 0.5 * x);
             carried.add(&exerted.force, &press, &arm);
         }
+    }
+    if view.table.rings {
+        carried.mirror();
     }
     carried
 }

@@ -17,7 +17,6 @@ pub use measure::{Fraction, OFFSET_LIMIT, fraction, initial_offset};
 use measure::{Measured, weigh};
 use model::{Body, Case, ContactClass, ContactDirection, Overlap};
 use particles::HaloPhase;
-use particles::Mirrors;
 use populate;
 
 /// Factor of the core's viscosity for the mass of a pair, its approach squared and its depth, over
@@ -78,7 +77,7 @@ impl Constants for Overlap {
         let core_radius = self.core_radius * of.pair.spacing;
         OverlapPair {
             modulus: self.stiffness * of.modulus.max(impact),
-            touching: populate::touching_value(a, b, of.case.dimension),
+            touching: populate::touching_value(a, b, of.case.extent()),
             core_modulus: self.core_stiffness * core_modulus.max(impact),
             core_radius,
             core_viscosity: 0.5 * CORE_VISCOSITY * density / core_radius,
@@ -185,7 +184,7 @@ impl Mode for Overlap {
         }
         let depth = 1.0 - distance / own.core_radius;
         if depth > 0.0 {
-            let volume = 0.5 * (i.volume + j.volume);
+            let volume = view.core_volume([i, j]);
             let stress = own.core_modulus * volume;
             let mean = pair.mean_stiffening();
             core = mean * stress * depth / own.core_radius;
@@ -224,18 +223,21 @@ impl Mode for Overlap {
     ) {
         let here = Self::side(view, i);
         let normal = |of: &ContactParticle| {
-            Mirrors::reflect_vector(&view.particles.contact_normal[of.slot], of.mirror_mask)
+            let mut normal = view.shown(of, &view.particles.contact_normal[of.slot]);
+            view.mirror(&mut normal);
+            normal
         };
         let mut sum = 0.0;
-        for &other in neighbours {
-            let j = view.particle(other);
+        for (_, j) in view.others(i, neighbours) {
             let pair = view.table.pair(i.size_class, j.size_class);
             if !pair.friction.is_any() {
                 continue;
             }
             let separation = Separation::between(i, &j);
             let own = own_force(view, [i, &j], &separation, &here);
-            load.add(pair, [i, &j], own, &separation.along(own));
+            let mut along = separation.along(own);
+            view.mirror(&mut along);
+            load.add(pair, [i, &j], own, &along);
             load.face(-own, &normal(&j));
             sum += own;
         }
@@ -267,7 +269,7 @@ fn own_force(
     let slope = -pair.kernel.slope(separation.distance);
     let bulk = i.volume * j.volume * slope_of_energy(here, own).max(0.0) * slope;
     let depth = (1.0 - separation.distance / own.core_radius).max(0.0);
-    let stress = own.core_modulus * (0.5 * (i.volume + j.volume));
+    let stress = own.core_modulus * view.core_volume([i, j]);
     stiffening * (bulk + 0.5 * stress * depth / own.core_radius)
 }
 

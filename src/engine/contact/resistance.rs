@@ -6,7 +6,6 @@ use super::friction::{Friction, Law, Slip};
 use super::pair::Pair;
 use super::view::{ContactParticle, ContactView};
 use numerics::vector::norm;
-use particles::Mirrors;
 
 /// Load of friction and damping of a receiver: sums over its pairs, weighted with `o_ij`.
 #[derive(Default)]
@@ -53,7 +52,8 @@ impl NormalLoad {
             sliding: view.particles.sliding[i.slot] != 0,
         };
         let normal = self.facing.map(|n| n / size);
-        let velocity = self.motion.map(|v| v / self.load);
+        let mut velocity = self.motion.map(|v| v / self.load);
+        view.mirror(&mut velocity);
         let law = self.law.over(self.load);
         let friction = law.step(&before, &self.force, &normal, &velocity, view.dt);
         Some((self.load, friction))
@@ -86,7 +86,7 @@ impl Shared {
         if load <= 0.0 {
             return Self::NONE;
         }
-        let force = Mirrors::reflect_vector(&particles.friction_force[slot], particle.mirror_mask);
+        let force = view.shown(particle, &particles.friction_force[slot]);
         Self {
             force: force.map(|f| f / load),
             power: particles.friction_power[slot] / load,
@@ -155,8 +155,7 @@ impl PairFriction {
         // Rows of the matrices of all springs and dashpots that i has a part in.
         let [mine, theirs] = [own * self.here.inverse_load, their * there.inverse_load];
         self.stiffness +=
-            2.0 * (mine * (law.stiffness * i.volume) + theirs * (back.stiffness * j.volume));
-        self.dashpot +=
-            2.0 * (mine * (law.dashpot * i.volume) + theirs * (back.dashpot * j.volume));
+            2.0 * (mine * (law.stiffness * i.volume) + theirs * (back.stiffness * j.whole));
+        self.dashpot += 2.0 * (mine * (law.dashpot * i.volume) + theirs * (back.dashpot * j.whole));
     }
 }

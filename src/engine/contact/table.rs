@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::gas::Gas;
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
-use model::{Body, Case, ContactMode, ContactPair, Loads, SelfContact};
+use model::{Body, Case, ContactMode, ContactPair, Loads, SelfContact, cube};
 use numerics::kernel::{Kernel, SUPPORT};
 use particles::neighbours::{ForeignTable, GroupRanges, Groups, SizeClasses};
 use particles::{HaloPhase, Owner, ParticleStore};
@@ -31,6 +31,10 @@ pub struct ContactTable {
     owners: Owner,
     /// True if parts of a body have contact.
     has_own: bool,
+    /// True if particles are rings about an axis.
+    pub(super) rings: bool,
+    /// By size class: volume (m³) of a particle of which a ring has many.
+    grains: Vec<f64>,
 }
 
 impl ContactTable {
@@ -41,7 +45,7 @@ impl ContactTable {
         let n = size_classes.count();
         let groups = Groups::new(case);
         let mut table = Self {
-            kernel: Kernel::new(case.dimension),
+            kernel: Kernel::new(case.extent()),
             foreign: ForeignTable {
                 class: vec![None; n * n],
                 reach2: vec![0.0; n * n],
@@ -62,6 +66,8 @@ impl ContactTable {
             gases: case.bodies.iter().map(|body| Gas::of(case, body)).collect(),
             owners: Owner::empty(),
             has_own: case.self_contact.is_some(),
+            rings: case.axisymmetric,
+            grains: Vec::new(),
         };
         for body in &case.bodies {
             table
@@ -75,6 +81,9 @@ impl ContactTable {
         }
         let bodies: Vec<Body> = (0..n)
             .map(|size_class| table.foreign.size_classes.body_of_size(case, size_class))
+            .collect();
+        table.grains = (bodies.iter())
+            .map(|body| cube(body.lattice.spacing, case.extent()))
             .collect();
         let speed = case.impact_speed();
         for a in 0..n {
@@ -226,6 +235,12 @@ impl ContactTable {
     #[inline(always)]
     pub(super) fn expansion(&self, body: usize) -> f64 {
         self.expansions[body]
+    }
+
+    /// Volume (m³) of a particle of a size class, of which a ring has many.
+    #[inline(always)]
+    pub(super) fn grain(&self, size_class: usize) -> f64 {
+        self.grains[size_class]
     }
 
     /// 1/ρ of a body at the start (m³/kg).

@@ -2,6 +2,9 @@
 
 use super::ContactTable;
 use super::gas::stiffening;
+use numerics::arc::{Arc, POINTS};
+use numerics::kernel::SUPPORT;
+use numerics::lanes::{F64x8, Lanes};
 use numerics::vector::square;
 use particles::neighbours::{Lists, MotionRecord};
 use particles::{Image, MirrorMask, Mirrors, ParticleStore};
@@ -29,8 +32,12 @@ pub(crate) struct ContactParticle {
     pub body: usize,
     /// Of particles, as contact tells them apart.
     pub size_class: usize,
-    /// Reference volume (m^d).
+    /// Reference volume (m^d); of a point of a ring what that stands for of it.
     pub volume: f64,
+    /// The same of all of it.
+    pub whole: f64,
+    /// Cosine and sine of the angle of a point of a ring.
+    turn: [f64; 2],
     /// The planes that it is mirrored by.
     pub mirror_mask: MirrorMask,
     pub position: [f64; 3],
@@ -60,15 +67,106 @@ impl<'a> ContactView<'a> {
         let slot = image.slot();
         let body = self.particles.body[slot] as usize;
         let record = &self.motion[index as usize];
+        let volume = record.mass * self.table.inverse_density(body);
         ContactParticle {
             slot,
             body,
             size_class: self.table.size_class(body, record.mass),
-            volume: record.mass * self.table.inverse_density(body),
+            volume,
+            whole: volume,
+            turn: [1.0, 0.0],
             mirror_mask: image.mirror_mask(),
             position: record.position,
             velocity: record.velocity,
         }
+    }
+
+    /// The neighbours of a particle with their indices, of rings all [points](numerics::arc) in reach.
+    #[inline(always)]
+    pub(crate) fn others<'n>(
+        &'n self,
+        i: &'n ContactParticle,
+        neighbours: &'n [u32],
+    ) -> impl Iterator<Item = (u32, ContactParticle)> + 'n {
+        neighbours.iter().flat_map(move |&index| {
+            let whole = self.particle(index);
+            let points = match self.table.rings {
+                true if self.reaches(i, &whole) => POINTS,
+                true => 0,
+                false => 1,
+            };
+            let mut arc = None;
+            (0..points).map(move |_| (index, self.point(i, &whole, &mut arc)))
+        })
+    }
+
+    /// True if some of a ring is in reach.
+    #[inline(always)]
+    fn reaches(&self, i: &ContactParticle, ring: &ContactParticle) -> bool {
+        let [x, y] = [0, 1].map(|a| i.position[a] - ring.position[a]);
+        let reach = SUPPORT * self.table.pair(i.size_class, ring.size_class).h;
+        x * x + y * y < reach * reach
+    }
+
+    /// The next point of a neighbour, or all of it.
+    #[inline(always)]
+    fn point(
+        &self,
+        i: &ContactParticle,
+        whole: &ContactParticle,
+        arc: &mut Option<Arc<F64x8>>,
+    ) -> ContactParticle {
+        if !self.table.rings {
+            return *whole;
+        }
+        let [r_i, r_j] = [i, whole].map(|particle| F64x8::splat(particle.position[0]));
+        match arc {
+            Some(arc) => arc.advance(),
+            None => {
+                let [x, y] = [0, 1].map(|a| i.position[a] - whole.position[a]);
+                let h = self.table.pair(i.size_class, whole.size_class).h;
+                let flat = F64x8::splat(y * y + x * x);
+                *arc = Some(Arc::new([r_i, r_j], flat, F64x8::splat(SUPPORT * h)));
+            }
+        }
+        let Some(arc) = arc else { return *whole };
+        let [x, z] = arc.apart(r_i, r_j).map(|all| all.0[0]);
+        let turn = arc.turn().map(|all| all.0[0]);
+        let [radius, along, _] = whole.velocity;
+        ContactParticle {
+            volume: whole.volume * arc.share.0[0],
+            turn,
+            position: [i.position[0] - x, whole.position[1], -z],
+            velocity: [radius * turn[0], along, radius * turn[1]],
+            ..*whole
+        }
+    }
+
+    /// A vector of a particle as it stands at its image or point.
+    #[inline(always)]
+    pub(super) fn shown(&self, of: &ContactParticle, vector: &[f64; 3]) -> [f64; 3] {
+        if self.table.rings {
+            return [vector[0] * of.turn[0], vector[1], vector[0] * of.turn[1]];
+        }
+        Mirrors::reflect_vector(vector, of.mirror_mask)
+    }
+
+    /// Takes out of a vector that stands for a pair of points of a ring what these cancel.
+    #[inline(always)]
+    pub(super) fn mirror(&self, vector: &mut [f64; 3]) {
+        if self.table.rings {
+            vector[2] = 0.0;
+        }
+    }
+
+    /// Volume (m^d) over which two particles have a core: the mean of both, as often as there are such pairs.
+    #[inline(always)]
+    pub(super) fn core_volume(&self, [i, j]: [&ContactParticle; 2]) -> f64 {
+        if self.table.rings {
+            let [a, b] = [i, j].map(|particle| self.table.grain(particle.size_class));
+            return i.volume * j.volume * (0.5 * (a + b)) / (a * b);
+        }
+        0.5 * (i.volume + j.volume)
     }
 
     /// Factor of the stiffness of a particle, see [`gas`](super::gas).
@@ -85,9 +183,7 @@ impl<'a> ContactView<'a> {
     /// The normal of the surface between two particles: that of both, from their bodies' corrected
     /// gradients, into the first one's body; none inside bodies.
     pub(super) fn normal(&self, i: &ContactParticle, j: &ContactParticle) -> Option<[f64; 3]> {
-        let inward = |of: &ContactParticle| {
-            Mirrors::reflect_vector(&self.particles.gradient_shift[of.slot], of.mirror_mask)
-        };
+        let inward = |of: &ContactParticle| self.shown(of, &self.particles.gradient_shift[of.slot]);
         let (a, b) = (inward(i), inward(j));
         let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let size = square(&n).sqrt();

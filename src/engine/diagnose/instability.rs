@@ -27,6 +27,9 @@ pub(crate) fn hidden_energy(case: &Case, comm: &Comm) -> f64 {
         let (density, reference) = (case.initial_density(body), material.reference_density);
         #[allow(clippy::cast_precision_loss, reason = "an estimate")]
         let volume = match body.lattice.grading {
+            _ if case.axisymmetric => {
+                populate::rings(case, body) * populate::particle_volume(body, case.dimension)
+            }
             None => *count as f64 * populate::particle_volume(body, case.dimension),
             Some(_) => body.shape.volume_above(&case.symmetry, case.dimension),
         };

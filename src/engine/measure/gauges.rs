@@ -68,8 +68,8 @@ impl Gauges {
         columns += usize::from(along.is_some());
         Self {
             means: Means {
-                kernel: Kernel::new(case.dimension),
-                mirrors: Mirrors::new(&case.symmetry),
+                kernel: Kernel::new(case.extent()),
+                mirrors: Mirrors::of(case),
             },
             readers: gauges.iter().map(|g| Reader::new(g, &readings)).collect(),
             readings,

@@ -221,5 +221,5 @@ pub fn raise(most: &mut f64, value: f64) {
 /// The symmetry planes of a case.
 #[must_use]
 pub fn mirrors(case: &Case) -> Mirrors {
-    Mirrors::new(&case.symmetry)
+    Mirrors::of(case)
 }

@@ -19,7 +19,7 @@ impl<'a> Whole<'a> {
     /// The part and all its images: 1, 2, 4 or 8.
     #[must_use]
     pub fn copies(&self) -> u32 {
-        u32::try_from(self.mirrors.masks().count()).unwrap_or(1)
+        self.mirrors.copies()
     }
 
     /// A sum such as a mass or an energy.

@@ -27,6 +27,8 @@ pub(super) struct MaterialUpdate<'a> {
     rigid: &'a [bool],
     /// Sound speed of particles without stress, by body (m/s).
     free_sound: &'a [f64],
+    /// By body: mass (kg) of a particle of which a ring has many; empty where there are none.
+    grain_masses: &'a [f64],
     dt: f64,
     /// Specific energies are those after the first half kick.
     points: MaterialPoints<'a>,
@@ -100,6 +102,7 @@ impl<'a> MaterialUpdate<'a> {
             material_of_body: &sums.material_of_body,
             rigid: &lists.groups.rigid,
             free_sound: &sums.free_sound,
+            grain_masses: &sums.grain_masses,
             dt: step.dt,
             points,
             recording: Recording::new(records, sums, step),
@@ -307,6 +310,12 @@ impl<'a> MaterialUpdate<'a> {
         let half = 0.5 * self.dt;
         for (k, &i) in slot.iter().enumerate() {
             batch.specific_energy[k] += half * self.points.heating[i];
+        }
+        // What hangs on the size of particles sees those of a ring.
+        if !self.grain_masses.is_empty() {
+            for (k, &i) in slot.iter().enumerate() {
+                batch.mass[k] = self.grain_masses[self.points.body[i] as usize];
+            }
         }
         if self.points.needs_particle
             && let Some(recording) = &self.recording

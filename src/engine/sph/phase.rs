@@ -98,7 +98,7 @@ impl Sph {
                 SphForm::Normalised => Form::Normalised(Normalised::default()),
                 SphForm::StressPoints => Form::StressPoints(StressPoints::default()),
             },
-            sums: Sums::new(case, &Kernel::new(case.dimension)),
+            sums: Sums::new(case, &Kernel::new(case.extent())),
             strains: Vec::new(),
             faces: Faces::new(case, groups),
         }

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 use super::rest::Resting;
 use super::term_records::Terms;
 use material::{Material, NEGLIGIBLE};
-use model::{Case, SmoothingLength};
-use numerics::kernel::Kernel;
+use model::{Body, Case, SmoothingLength};
+use numerics::kernel::{Kernel, RingScale};
 use numerics::lanes::LANES;
 use particles::neighbours::Lists;
 use particles::{GRAIN, MirrorMask, Scatter, resize};
@@ -20,6 +20,8 @@ use sums::step::Side;
 pub(super) struct Sums {
     pub dimension: usize,
     pub scale: Scale,
+    /// By body: mass (kg) of a particle of which a ring has many; empty where there are none.
+    pub grain_masses: Vec<f64>,
     pub viscosity: Viscosity,
     pub terms: Terms,
     pub materials: Vec<Material>,
@@ -46,10 +48,20 @@ impl Sums {
             .iter()
             .all(|b| b.smoothing_length.to_bits() == h.to_bits() && b.lattice.sizes.is_none());
         let constant = case.sph.smoothing_length == SmoothingLength::Constant && equal;
-        let scale = Scale::new(kernel, constant.then_some(h));
+        let scale = if case.axisymmetric {
+            Scale::Ring(RingScale::new(kernel))
+        } else {
+            Scale::new(kernel, constant.then_some(h))
+        };
+        let grain = |body: &Body| {
+            let area = body.lattice.particle_volume(case.dimension);
+            case.initial_density(body) * area * area.sqrt()
+        };
+        let rings = case.bodies.iter().filter(|_| case.axisymmetric);
         Self {
-            dimension: case.dimension,
+            dimension: case.extent(),
             scale,
+            grain_masses: rings.map(grain).collect(),
             viscosity: Viscosity {
                 alpha: case.sph.alpha,
                 beta: case.sph.beta,

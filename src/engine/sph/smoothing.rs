@@ -26,7 +26,7 @@ impl Smoothing {
         let inverse_density = |body| 1.0 / case.initial_density(body);
         Self {
             rule: case.sph.smoothing_length,
-            dimension: case.dimension,
+            dimension: case.extent(),
             reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             inverse_density: case.bodies.iter().map(inverse_density).collect(),
             sizes: Sizes::new(case),

@@ -28,7 +28,7 @@ impl<'a> StressForces<'a> {
         Self {
             form: case.sph.form,
             corrected: sph.corrected(),
-            kernel: Kernel::new(case.dimension),
+            kernel: Kernel::new(case.extent()),
             particles,
             lists,
         }

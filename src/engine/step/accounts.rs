@@ -3,7 +3,7 @@
 use crate::contact::ContactTable;
 use crate::diagnose::{KeptTotals, RunState, StepSums, Totals, angular_momentum_scale};
 use crate::loads::Loads;
-use crate::measure::{self, Matter, Measures};
+use crate::measure::{self, Matter, Measures, Revolved};
 use comm::Comm;
 use model::Case;
 use particles::neighbours::Lists;
@@ -60,6 +60,11 @@ impl Accounts {
             totals.add_failure(active, kept, loads, comm);
         }
         totals.add_yielded(active.particles, loads, comm);
+        if case.axisymmetric {
+            // Rings have none.
+            totals.momentum[0] = 0.0;
+            totals.angular_momentum = [0.0; 3];
+        }
         totals
     }
 
@@ -70,6 +75,11 @@ impl Accounts {
         let totals = self.totals(comm, inputs, state);
         let turning = angular_momentum_scale(inputs.active.particles, inputs.loads, comm);
         state.book_totals(totals, turning, inputs.loads.gravity);
+        if inputs.case.axisymmetric {
+            // What acts towards the axis or from it is no impulse.
+            state.worst.momentum_deviation[0] = 0.0;
+            state.worst.momentum_error[0] = 0.0;
+        }
     }
 
     /// Chooses the particles that carry gauges, and marks particles by the zones and the sides of witness planes that
@@ -86,6 +96,8 @@ impl Accounts {
         gauges.mark(particles, &state.gauge_carriers);
         measure::mark_zones(case, particles);
         let matter = Matter::of(case, mirrors, particles);
+        let revolved = Revolved::of(&matter);
+        let matter = revolved.as_ref().map_or(matter, Revolved::matter);
         state.remembered = measure::remember(&matter, comm);
         self.measures.witnesses.begin(particles);
     }

@@ -112,7 +112,7 @@ impl Activity {
     /// them.
     pub fn new(case: &Case) -> Self {
         let loads = &case.loads;
-        let mirrors = Mirrors::new(&case.symmetry);
+        let mirrors = Mirrors::of(case);
         let fixed = case.measure.gauges.iter().filter(|gauge| !gauge.moves);
         let gauges = fixed.flat_map(|gauge| {
             mirrors

@@ -60,7 +60,7 @@ fn total_virials(
     let Some(total) = simulation.sph.total() else {
         return Vec::new();
     };
-    let kernel = Kernel::new(simulation.case.dimension);
+    let kernel = Kernel::new(simulation.case.extent());
     let lengths = &simulation.particles.smoothing_length;
     let mut all = of_receivers(total.lists(), |i, place, neighbours| {
         chosen(i).then(|| (i, total.virial(&kernel, lengths, place, neighbours)))
@@ -94,7 +94,7 @@ pub fn measure_in(simulation: &mut Simulation, comm: &Comm) {
     }
     space.halo.exchange(comm, particles, HaloPhase::SHOWN);
     let (all, lists) = (&*particles, &search.lists);
-    let kernel = Kernel::new(case.dimension);
+    let kernel = Kernel::new(case.extent());
     let means = of_receivers(lists, |i, place, neighbours| {
         let is_there = all.contact_stress[i] != [0.0; 6];
         is_there.then(|| mean_carried(&kernel, all, lists, place, neighbours))

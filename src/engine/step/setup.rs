@@ -89,7 +89,8 @@ impl Filling<'_> {
                 if let Err(why) = start.put(particles, i, id, site.position, site.index) {
                     self.unsound.get_or_insert((id, why));
                 }
-                particles.mass[i] = start.mass_at(particles, i) * site.share;
+                particles.mass[i] =
+                    start.mass_at(particles, i) * site.share * case.around(&site.position);
                 particles.smoothing_length[i] *= edge(site.share, case.dimension);
                 set_from_file(body, particles, i, site.index);
                 Connectivity::begin(particles, i, self.first_id);

@@ -144,7 +144,7 @@ impl Simulation {
             step_control: StepControl::new(&case, table, comm),
             space: Space {
                 partition,
-                halo: Halo::new(Mirrors::new(&case.symmetry)),
+                halo: Halo::new(Mirrors::of(&case)),
             },
             search: Search::new(&case, table, layout),
             sph: Sph::new(&case, comm.size(), &contact.table.groups, layout),
@@ -193,7 +193,7 @@ impl Simulation {
             loads,
         };
         state.initial = accounts.totals(comm, inputs, state);
-        state.angular_momentum_scale = Some(0.0);
+        state.angular_momentum_scale = (!case.axisymmetric).then_some(0.0);
         state.worst = Worst::default();
         accounts.diagnose(comm, state, inputs);
         state.worst.nearest = None;

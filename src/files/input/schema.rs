@@ -53,6 +53,9 @@ tables! {
         title: Option<Spanned<String>> = "untitled";
         /// 1, 2 or 3.
         dimension: Spanned<i64>;
+        /// In two dimensions: x is the distance from an axis and y the place along it, about which all is the same. Bodies
+        /// stand at x above zero.
+        axisymmetric: Option<Spanned<bool>> = false;
         /// Particle spacing of every body that sets no own.
         spacing: Option<Placed<Length>>, Positive;
         /// When the run ends.

@@ -159,7 +159,7 @@ fn write_quantity(
             write(FieldKind::Scalar, bytemuck::cast_slice(&values))?;
         }
     }
-    let unit = unit_of_model(quantity.unit(), case.dimension);
+    let unit = unit_of_model(quantity.unit(), case.extent());
     file.note(&path, "unit", unit)?;
     file.note(&path, "description", &quantity.description())
 }

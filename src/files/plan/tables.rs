@@ -18,7 +18,7 @@ const RECORDED: f64 = 8.0;
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 pub(super) fn bytes(case: &Case, approaches: &[Approach], steps: f64) -> f64 {
     let [rows, of_bodies] = RowSchedule::of(case).counts(steps, case.run.end_time);
-    let width = |list| columns(case.dimension, list).len() as f64;
+    let width = |list| columns(case.extent(), list).len() as f64;
     let bodies = case.bodies.len() as f64;
     let mut each_row = NUMBER * width(HISTORY);
     each_row += NUMBER * width(CONTACTS) * touching(case, approaches);
@@ -47,7 +47,7 @@ fn touching(case: &Case, approaches: &[Approach]) -> f64 {
 #[allow(clippy::cast_precision_loss, reason = "an estimate")]
 fn gauges(case: &Case, steps: f64) -> f64 {
     let all = &case.measure.gauges;
-    let width = columns(case.dimension, GAUGES).len() + Gauges::new(case).columns().count();
+    let width = columns(case.extent(), GAUGES).len() + Gauges::new(case).columns().count();
     let each = if all.len() < gauge_records::MANY {
         NUMBER
     } else {

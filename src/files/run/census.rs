@@ -32,7 +32,7 @@ pub fn take(
         let (case, state) = (&simulation.case, &simulation.state);
         folder.on_root(comm, || {
             let bodies: Vec<&str> = case.bodies.iter().map(|b| b.name.as_str()).collect();
-            let table = FragmentTable::new(&census, &bodies, case.dimension);
+            let table = FragmentTable::new(&census, &bodies, case.extent());
             folder.write_fragments(state.step, &table)?;
             let row = fragments::row(state.step, state.time, &census);
             tables.map_or(Ok(()), |tables| tables.write_fragments(&row))

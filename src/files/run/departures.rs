@@ -32,7 +32,7 @@ impl Departures {
                 counted(whole.count(gone.particles), "particle"),
                 shown(
                     whole.sum(gone.mass),
-                    crate::output::unit_of_model("kg", case.dimension)
+                    crate::output::unit_of_model("kg", case.extent())
                 ),
                 seconds(state.time)
             ));

@@ -43,7 +43,7 @@ const DIRECTIONS: [&str; 2] = ["forwards", "backwards"];
 
 /// The columns of the history of a case, from whose box of interest particles may have departed.
 fn of_history(case: &Case, departs: bool) -> Vec<Column> {
-    let columns = |list| columns(case.dimension, list);
+    let columns = |list| columns(case.extent(), list);
     let mut all = columns(HISTORY);
     if case.sph.form != SphForm::Conventional {
         all.push(Column::new("uncorrected", ""));
@@ -112,7 +112,7 @@ fn of_measures(
 
 /// The columns of gauges.
 fn of_gauges(simulation: &Simulation) -> Vec<Column> {
-    let mut all = columns(simulation.case.dimension, GAUGES);
+    let mut all = columns(simulation.case.extent(), GAUGES);
     let readings = simulation.gauges().columns();
     all.extend(readings.map(|(name, unit)| Column::new(&name, unit)));
     all
@@ -135,7 +135,7 @@ impl Tables {
         #[allow(clippy::cast_precision_loss, reason = "steps fit a double")]
         let step = resume.map(|state| state.step as f64);
         let time = resume.map(|state| state.time);
-        let columns = |list| columns(case.dimension, list);
+        let columns = |list| columns(case.extent(), list);
         let departs =
             case.domain.keep.is_some() || resume.is_some_and(|state| !state.departed.is_empty());
         let of_history = of_history(case, departs);
@@ -172,7 +172,7 @@ impl Tables {
                 .transpose()?,
             fragments: (case.fragments.is_some())
                 .then(|| {
-                    let columns = fragments::columns(case.dimension);
+                    let columns = fragments::columns(case.extent());
                     open(folder, &folder.fragments(), &columns, "time", time)
                 })
                 .transpose()?,
@@ -344,7 +344,7 @@ impl Tables {
         };
         let (case, time) = (&simulation.case, simulation.state.time);
         let all = || case.measure.measures.iter().zip(found);
-        figures.rows(measures::figures(time, all(), case.dimension))?;
+        figures.rows(measures::figures(time, all(), case.extent()))?;
         distributions.rows(measures::distributions(time, all()))
     }
 

@@ -48,7 +48,7 @@ impl Watched {
         let case = &simulation.case;
         Self {
             computed_share: share,
-            ..Self::of(&case.run, case.dimension, &simulation.state, past)
+            ..Self::of(&case.run, case.extent(), &simulation.state, past)
         }
     }
 

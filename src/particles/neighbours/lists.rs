@@ -64,7 +64,8 @@ impl Lists {
         let (first, rest) = lengths.split_first().expect("a case has bodies");
         let same =
             |group: &Lengths| group.uniform && group.longest.to_bits() == first.longest.to_bits();
-        let uniform = first.uniform && rest.iter().all(same);
+        // Sums over rings read the lengths of both.
+        let uniform = !case.axisymmetric && first.uniform && rest.iter().all(same);
         let common_velocity = |group| {
             let first = groups.members(group).next();
             first.map_or([0.0; 3], |body| case.bodies[body].velocity.into())

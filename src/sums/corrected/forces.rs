@@ -125,11 +125,12 @@ impl PairStress for CorrectedRecord {
             let state = &sums.stresses[pair.index];
             let shown = sums.terms.record::<TERMS>(pair.index);
             let r = separation.r;
+            let (there, bent) = (pair.velocity(), pair.vector(&state.hourglass));
             let mut v = velocity;
             let mut bend = hourglass;
             for a in 0..3 {
-                v[a] = v[a].sub(V::splat(source.velocity[a]));
-                bend[a] = bend[a].sub(V::splat(state.hourglass[a]));
+                v[a] = v[a].sub(there[a]);
+                bend[a] = bend[a].sub(bent[a]);
             }
             let taken = share.max(V::splat(state.viscous_share)).mul(pair.h);
             let now = viscous.pair(
@@ -147,10 +148,8 @@ impl PairStress for CorrectedRecord {
             let pull = dot(&r, &bend).mul(separation.inverse);
             let central = pull.mul_add(separation.inverse, zero.sub(pi));
             let mut lost = central.mul(now.closing);
-            let weight = separation
-                .inverse
-                .mul(V::splat(source.volume))
-                .mul(kernel.slope);
+            let weight = separation.inverse.mul(pair.volume()).mul(kernel.slope);
+            let shows = pair.tensor(&state.stress);
             let steep = [r[0].mul(weight), r[1].mul(weight), r[2].mul(weight)];
             if terms.need_shape() {
                 let scale = &around.sources.scale;
@@ -175,12 +174,14 @@ impl PairStress for CorrectedRecord {
             for a in 0..3 {
                 slope[a] = slope[a].add(steep[a]);
                 for b in 0..3 {
-                    let stress = V::splat(state.stress[3 * a + b]);
+                    let stress = shows[3 * a + b];
                     let stress = if a == b { stress.add(central) } else { stress };
                     force[a] = stress.mul_add(steep[b], force[a]);
                 }
             }
         }
+        Neighbourhood::<S>::mirror(&mut slope);
+        Neighbourhood::<S>::mirror(&mut force);
         let stress: [V; 9] = gather_all(&own, |record, c| record.stress[c]);
         let of_own = along(&stress, &slope);
         let mut acceleration = force;

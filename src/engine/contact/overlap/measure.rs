@@ -57,11 +57,15 @@ pub fn initial_offset(fraction: &Fraction) -> (f64, bool) {
     (wanted.min(limit), wanted > limit)
 }
 
-/// Current volume (m³) of the matter of an image, without the voids in it.
+/// Current volume (m³) of the matter of an image, without the voids in it, or what a point stands for of it.
 #[inline(always)]
 fn matter(view: &ContactView, index: u32, particle: &ContactParticle) -> f64 {
-    let most = particle.volume * view.table.expansion(particle.body);
-    view.motion[index as usize].volume.min(most)
+    let most = particle.whole * view.table.expansion(particle.body);
+    let matter = view.motion[index as usize].volume.min(most);
+    if view.table.rings {
+        return matter * (particle.volume / particle.whole);
+    }
+    matter
 }
 
 /// Sums the foreign fraction of the receiver at `index`, whose initial overlap offset is `offset`.
@@ -69,8 +73,7 @@ fn matter(view: &ContactView, index: u32, particle: &ContactParticle) -> f64 {
 pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64) -> Fraction {
     let i = view.particle(index);
     let mut sum = Fraction::default();
-    for &other in neighbours {
-        let j = view.particle(other);
+    for (other, j) in view.others(&i, neighbours) {
         let (pair, own) = constants(view, &i, &j);
         let separation = Separation::between(&i, &j);
         let kernel = pair.kernel.value(separation.distance);
@@ -95,8 +98,7 @@ pub fn fraction(view: &ContactView, index: u32, neighbours: &[u32], offset: f64)
 fn normal(view: &ContactView, index: u32, neighbours: &[u32], fraction: &Fraction) -> [f64; 3] {
     let i = view.particle(index);
     let mut sum = [0.0; 3];
-    for &other in neighbours {
-        let j = view.particle(other);
+    for (_, j) in view.others(&i, neighbours) {
         let separation = Separation::between(&i, &j);
         let slope = -constants(view, &i, &j).0.kernel.slope(separation.distance);
         let along = separation.along(j.volume * slope);
@@ -104,6 +106,7 @@ fn normal(view: &ContactView, index: u32, neighbours: &[u32], fraction: &Fractio
             sum[a] += along[a];
         }
     }
+    view.mirror(&mut sum);
     let weight = fraction.fraction * fraction.fraction / norm(&sum).max(f64::MIN_POSITIVE);
     sum.map(|x| x * weight)
 }
@@ -177,8 +180,7 @@ fn look_at_own(view: &ContactView, found: &mut [Measured], own: &Chunk) {
 fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
     let i = view.particle(index);
     let mut filled = current;
-    for &other in own {
-        let j = view.particle(other);
+    for (other, j) in view.others(&i, own) {
         let distance = Separation::between(&i, &j).distance;
         let kernel = view
             .table
@@ -186,7 +188,8 @@ fn has_room(view: &ContactView, index: u32, own: &[u32], current: f64) -> bool {
             .kernel
             .value(distance);
         let share = matter(view, other, &j) * kernel;
-        filled += if other == index { 0.5 * share } else { share };
+        let itself = other == index && !view.table.rings;
+        filled += if itself { 0.5 * share } else { share };
         if filled > 1.0 {
             return false;
         }
@@ -204,9 +207,8 @@ fn isolation(view: &ContactView, index: u32, own: &[u32], touching: f64) -> f64 
     }
     let half = 0.5 * touching;
     let mut left = half;
-    for &other in own {
-        if other != index {
-            let j = view.particle(other);
+    for (other, j) in view.others(&i, own) {
+        if other != index || view.table.rings {
             let distance = Separation::between(&i, &j).distance;
             left -= j.volume
                 * view

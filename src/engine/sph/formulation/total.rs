@@ -128,7 +128,7 @@ impl TotalBodies {
             is_initial_due: true,
             positions: Vec::new(),
             from_mirrors: Vec::new(),
-            mirrors: Mirrors::new(&case.symmetry),
+            mirrors: Mirrors::of(case),
             group_of_body: groups.of_body.clone(),
             leaving: others.iter().map(|_| AtomicU64::new(0)).collect(),
             tears: vec![None; others.len()],

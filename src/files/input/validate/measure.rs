@@ -44,7 +44,10 @@ pub fn measure(
     Ok(MeasureOptions {
         bodies: params.bodies(),
         every: params.every()?.unwrap_or(case.run.end_time / ROWS),
-        measures: measures(case, params)?,
+        measures: {
+            let space = case.axisymmetric.then(|| case.revolved());
+            measures(space.as_ref().unwrap_or(case), params)?
+        },
         arrival_pressure: params.arrival_pressure()?,
         gauges,
         witnesses,

@@ -5,6 +5,7 @@ pub(super) mod check;
 mod absorbers;
 mod across;
 mod areal;
+mod axisymmetric;
 mod bodies;
 mod contact;
 mod defaults;
@@ -67,8 +68,10 @@ const MOST_OVERLAP: f64 = 0.5;
 /// Builds the case, whose files stand in `folder`; `resolved` is left empty.
 pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let dimension = dimension(&params.dimension)?;
-    let symmetry = symmetry(&params.symmetry, dimension)?;
-    let (names, mut materials) = materials::materials(&params.material, dimension, folder)?;
+    let mut symmetry = symmetry(&params.symmetry, dimension)?;
+    let axisymmetric = axisymmetric::axisymmetric(params, dimension, &mut symmetry)?;
+    let extent = if axisymmetric { 3 } else { dimension };
+    let (names, mut materials) = materials::materials(&params.material, extent, folder)?;
     let (sph, smoothing) = sph(&params.sph, &materials)?;
     let mut bodies = bodies::Reader {
         dimension,
@@ -95,13 +98,14 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         folder,
     }
     .all(params)?;
-    let time_step = time_step(dimension, &params.time_step, &sph, &bodies, &materials)?;
+    let time_step = time_step(extent, &params.time_step, &sph, &bodies, &materials)?;
     let boxes = KeepReader::new(dimension, &bodies, &symmetry, &length_unit);
     let (domain, output) = domain_and_output(params, &boxes, &materials)?;
     let mut case = Case {
         title: names::title(params)?,
         length_unit,
         dimension,
+        axisymmetric,
         materials,
         bodies,
         contacts,
@@ -119,6 +123,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         measure: MeasureOptions::default(),
         resolved: String::new(),
     };
+    axisymmetric::fit(&mut case);
     complete(&mut case, params)?;
     Ok(case)
 }
@@ -138,7 +143,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     total::resolve(case, &params.body)?;
     // Its defaults hang on the forms of bodies.
     case.time_step = time_step(
-        case.dimension,
+        case.extent(),
         &params.time_step,
         &case.sph,
         &case.bodies,
@@ -147,6 +152,7 @@ fn complete(case: &mut Case, params: &CaseParams) -> Result<(), Diagnostic> {
     case.measure = measure::measure(case, &params.measure, &params.gauge, &params.witness)?;
     stress_points::check(case, params.sph.form.as_ref().map(Spanned::span))?;
     across::check(case, params)?;
+    axisymmetric::check(case, params)?;
     check_moduli(case, &params.body)?;
     check_overlaps(case, &params.body)
 }
