@@ -222,7 +222,11 @@ fn print_body(case: &Case, body: &Body) -> u64 {
 
 #[allow(clippy::cast_precision_loss, reason = "for people")]
 fn print_report(case: &Case, approaches: &[Approach], ranks: usize) {
-    say(&format!("{} ({}-D)", case.title, case.dimension));
+    let kind = match case.dimension {
+        2 if case.axisymmetric => "axisymmetric".to_owned(),
+        dimension => format!("{dimension}-D"),
+    };
+    say(&format!("{} ({kind})", case.title));
     let counts = case.bodies.iter().map(|body| print_body(case, body));
     let total: u64 = counts.sum();
     let memory = memory::in_words(memory::of_rank(case, &Comm::solo(), ranks));

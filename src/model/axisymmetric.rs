@@ -20,6 +20,19 @@ impl Case {
         }
     }
 
+    /// Where the ring of a site stands (m), for a spacing (m): half way from the middle of its annulus to the centroid
+    /// of that, which is `Δp²/12 r` farther out. There a uniform pressure pushes the rings about the axis by some
+    /// hundredths of what it does in the middles; elsewhere it makes no difference.
+    #[must_use]
+    pub fn stands(&self, position: &[f64; 3], spacing: f64) -> [f64; 3] {
+        let [x, y, z] = *position;
+        if !self.axisymmetric {
+            return *position;
+        }
+        let aside = spacing * spacing / (24.0 * x.max(0.5 * spacing));
+        [x + aside, y, z]
+    }
+
     /// The quarter, between the planes of x = 0 and z = 0, of the model in space that an axisymmetric one stands for: with
     /// its measures, and without what fills its bodies.
     #[must_use]

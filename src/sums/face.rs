@@ -48,7 +48,7 @@ impl<S: PairScale> Vectorised for FaceCorrection<'_, S> {
                 m[c].0[k] = value;
             }
         }
-        let correction = Correction::new::<V>(&m);
+        let correction = Correction::new::<V, S>(&m);
         let (outer, inner) = (load_all(&correction.outer), load_all(&correction.inner));
         store_all(&product::<V>(&outer, &inner))
     }

@@ -57,7 +57,7 @@ impl<S: PairScale> Vectorised for NeighbourMean<'_, S> {
         for axis in self.dimension..3 {
             moment[axis] = V::splat(1.0);
         }
-        let inner = Correction::new::<V>(&store_all(&moment)).inner;
+        let inner = Correction::new::<V, S>(&store_all(&moment)).inner;
         let gradient = along(&full(&load_all(&inner)), &gradient);
         for a in 0..3 {
             sum = gradient[a].mul_add(place[a], sum);

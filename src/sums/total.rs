@@ -19,7 +19,7 @@ mod pairs;
 pub use forces::TotalRecord;
 pub use pairs::Close;
 
-use super::corrected::{add_moment, spin};
+use super::corrected::{LATE_FADE, add_moment, spin};
 use super::limiter::Limiter;
 use super::neighbourhood::{Neighbourhood, gather, gather_all, records};
 use numerics::dispatch::Vectorised;
@@ -29,9 +29,6 @@ use numerics::lane_matrix::{
 };
 use numerics::lanes::{F64x8, LANES, Lanes};
 use pairs::{Pairs, at};
-
-/// e⁴ of the fade of rates, at e = .15: as the deformation gradient is exact up to faces, rates have to be nearly so.
-const FADE: f64 = 0.15 * 0.15 * 0.15 * 0.15;
 
 /// Share ε of the moments of a complete neighbourhood that every particle has in every direction.
 const THICKNESS: f64 = 1e-6;
@@ -287,7 +284,7 @@ impl<S: PairScale> Vectorised for TotalGradient<'_, S> {
         }
         let deformation = deformation(&plain, &moment);
         let (shrink, determinant) = inverse(&deformation, LEAST_DETERMINANT);
-        let faded = faded(&moment, FADE);
+        let faded = faded(&moment, LATE_FADE);
         let inner = times(&full(&faded.inverse), &shrink);
         let outer = times(&plain, &inner);
         let stretch = times(&rate, &inner);

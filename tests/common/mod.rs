@@ -45,6 +45,7 @@ pub fn case(dimension: usize, bodies: Vec<Body>, end_time: f64) -> Case {
         title: "test".into(),
         length_unit: model::readable::Readable::length(1.0),
         dimension,
+        axisymmetric: false,
         materials: vec![library::find("aluminium-2024").expect("in the library")],
         bodies,
         contacts: Vec::new(),

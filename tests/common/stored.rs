@@ -39,6 +39,7 @@ pub fn case() -> Case {
         title: "Sphere on plate, ⌀ 0.6 mm".to_owned(),
         length_unit: model::readable::Readable::length(1.0),
         dimension: 3,
+        axisymmetric: false,
         materials: Vec::new(),
         bodies: vec![body("sphere", 2e-5), body("plate", 1e-5)],
         contacts: Vec::new(),

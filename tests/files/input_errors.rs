@@ -999,3 +999,50 @@ shape.sphere.radius = "5 mm"
         "{found}"
     );
 }
+
+#[test]
+fn rings_refuse_what_they_do_not_have() {
+    let text = r#"
+dimension = 2
+axisymmetric = true
+spacing = "1 mm"
+run.end_time = "1 us"
+material.metal.library = "copper"
+[[body]]
+name = "disc"
+material = "metal"
+shape.box = { lower = [0, 0], upper = ["5 mm", "2 mm"] }
+"#;
+    for (change, said) in [
+        (
+            "symmetry=[{ axis = \"x\" }]",
+            "no other plane is normal to x",
+        ),
+        ("sph.form=conventional", "`sph.form` must be \"corrected\""),
+        ("sph.xsph=0.1", "`sph.xsph` is not theirs"),
+        ("contact.mode=penalty", "`contact.mode` must be"),
+        (
+            "gravity=[\"1 m/s^2\", 0]",
+            "gravity along x is not its own mirror image",
+        ),
+        (
+            "body.disc.velocity=[\"1 m/s\", 0]",
+            "it can move along y alone",
+        ),
+        (
+            "body.disc.form=total",
+            "its particles are rings about an axis",
+        ),
+        (
+            "body.disc.spacing={ inner = \"1 mm\", outer = \"2 mm\", at = [0, 0], within = \"1 mm\" }",
+            "its `spacing` must be the same everywhere",
+        ),
+        (
+            "pressure=[{ body = \"disc\", value = \"1 GPa\" }]",
+            "`[[pressure]]` does not act on them",
+        ),
+    ] {
+        let found = message(text, &[change]);
+        assert!(found.contains(said), "{change}: {found}");
+    }
+}

@@ -414,6 +414,22 @@ fn a_gentle_start_on_any_ranks_and_through_restarts() {
     }
 }
 
+/// Rings about an axis, with friction between a sphere and a plate that meet.
+#[test]
+fn rings_on_any_ranks_and_through_restarts() {
+    let (_keep, at) = folder();
+    let case = [
+        "inputs/axisymmetric-impact",
+        "--set",
+        "spacing=0.04mm",
+        "--set",
+        "contact.friction=0.2",
+        "--set",
+        "output.checkpoint_every=0.04us",
+    ];
+    same_anywhere(&case, ["0.02us", "0.07us"], at, "rings");
+}
+
 /// Rigid bodies that forces move, which share particles among ranks: a ball, a brick and a bar on a pivot; and a sphere that
 /// two symmetry planes cut.
 #[test]

@@ -18,6 +18,7 @@ mod release;
 mod shocks;
 
 mod absorbing;
+mod axisymmetric;
 mod bars;
 mod block;
 mod contact;

@@ -87,58 +87,12 @@ impl<'a> ContactView<'a> {
         &'n self,
         i: &'n ContactParticle,
         neighbours: &'n [u32],
-    ) -> impl Iterator<Item = (u32, ContactParticle)> + 'n {
-        neighbours.iter().flat_map(move |&index| {
-            let whole = self.particle(index);
-            let points = match self.table.rings {
-                true if self.reaches(i, &whole) => POINTS,
-                true => 0,
-                false => 1,
-            };
-            let mut arc = None;
-            (0..points).map(move |_| (index, self.point(i, &whole, &mut arc)))
-        })
-    }
-
-    /// True if some of a ring is in reach.
-    #[inline(always)]
-    fn reaches(&self, i: &ContactParticle, ring: &ContactParticle) -> bool {
-        let [x, y] = [0, 1].map(|a| i.position[a] - ring.position[a]);
-        let reach = SUPPORT * self.table.pair(i.size_class, ring.size_class).h;
-        x * x + y * y < reach * reach
-    }
-
-    /// The next point of a neighbour, or all of it.
-    #[inline(always)]
-    fn point(
-        &self,
-        i: &ContactParticle,
-        whole: &ContactParticle,
-        arc: &mut Option<Arc<F64x8>>,
-    ) -> ContactParticle {
-        if !self.table.rings {
-            return *whole;
-        }
-        let [r_i, r_j] = [i, whole].map(|particle| F64x8::splat(particle.position[0]));
-        match arc {
-            Some(arc) => arc.advance(),
-            None => {
-                let [x, y] = [0, 1].map(|a| i.position[a] - whole.position[a]);
-                let h = self.table.pair(i.size_class, whole.size_class).h;
-                let flat = F64x8::splat(y * y + x * x);
-                *arc = Some(Arc::new([r_i, r_j], flat, F64x8::splat(SUPPORT * h)));
-            }
-        }
-        let Some(arc) = arc else { return *whole };
-        let [x, z] = arc.apart(r_i, r_j).map(|all| all.0[0]);
-        let turn = arc.turn().map(|all| all.0[0]);
-        let [radius, along, _] = whole.velocity;
-        ContactParticle {
-            volume: whole.volume * arc.share.0[0],
-            turn,
-            position: [i.position[0] - x, whole.position[1], -z],
-            velocity: [radius * turn[0], along, radius * turn[1]],
-            ..*whole
+    ) -> Others<'n> {
+        Others {
+            view: self,
+            i,
+            neighbours: neighbours.iter(),
+            ring: None,
         }
     }
 
@@ -188,6 +142,83 @@ impl<'a> ContactView<'a> {
         let n = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
         let size = square(&n).sqrt();
         (size > 0.0).then(|| n.map(|x| x / size))
+    }
+}
+
+/// Neighbours of a particle, one after the other.
+pub(crate) struct Others<'n> {
+    view: &'n ContactView<'n>,
+    i: &'n ContactParticle,
+    neighbours: std::slice::Iter<'n, u32>,
+    /// The ring in hand.
+    ring: Option<Ring>,
+}
+
+/// A ring, of which points are told.
+struct Ring {
+    index: u32,
+    whole: ContactParticle,
+    /// At the point that comes next.
+    arc: Arc<F64x8>,
+    /// Points that are left.
+    left: usize,
+}
+
+impl Iterator for Others<'_> {
+    type Item = (u32, ContactParticle);
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.view.table.rings {
+            return self.on_ring();
+        }
+        let &index = self.neighbours.next()?;
+        Some((index, self.view.particle(index)))
+    }
+}
+
+impl Others<'_> {
+    #[cold]
+    #[inline(never)]
+    fn on_ring(&mut self) -> Option<(u32, ContactParticle)> {
+        while self.ring.is_none() {
+            let &index = self.neighbours.next()?;
+            self.ring = self.ring(index);
+        }
+        let ring = self.ring.as_mut()?;
+        let [r_i, r_j] = [self.i, &ring.whole].map(|particle| F64x8::splat(particle.position[0]));
+        let [x, z] = ring.arc.apart(r_i, r_j).map(|all| all.0[0]);
+        let turn = ring.arc.turn().map(|all| all.0[0]);
+        let [radius, along, _] = ring.whole.velocity;
+        let point = ContactParticle {
+            volume: ring.whole.volume * ring.arc.share.0[0],
+            turn,
+            position: [self.i.position[0] - x, ring.whole.position[1], -z],
+            velocity: [radius * turn[0], along, radius * turn[1]],
+            ..ring.whole
+        };
+        let index = ring.index;
+        ring.arc.advance();
+        ring.left -= 1;
+        if ring.left == 0 {
+            self.ring = None;
+        }
+        Some((index, point))
+    }
+
+    /// The ring of an index, if some of it is in reach.
+    fn ring(&self, index: u32) -> Option<Ring> {
+        let whole = self.view.particle(index);
+        let [x, y] = [0, 1].map(|a| self.i.position[a] - whole.position[a]);
+        let (flat, table) = (y * y + x * x, self.view.table);
+        let reach = SUPPORT * table.pair(self.i.size_class, whole.size_class).h;
+        let radii = [self.i, &whole].map(|particle| F64x8::splat(particle.position[0]));
+        (flat < reach * reach).then(|| Ring {
+            index,
+            whole,
+            arc: Arc::new(radii, F64x8::splat(flat), F64x8::splat(reach)),
+            left: POINTS,
+        })
     }
 }
 

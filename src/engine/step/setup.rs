@@ -86,7 +86,8 @@ impl Filling<'_> {
             let start = Start::new(case, b, !stressed);
             for site in sites {
                 let (i, id) = (self.next, self.first_id + site.index);
-                if let Err(why) = start.put(particles, i, id, site.position, site.index) {
+                let stands = case.stands(&site.position, body.lattice.spacing);
+                if let Err(why) = start.put(particles, i, id, stands, site.index) {
                     self.unsound.get_or_insert((id, why));
                 }
                 particles.mass[i] =

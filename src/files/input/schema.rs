@@ -143,7 +143,7 @@ tables! {
         /// Those of a file, in place of a shape and its filling.
         particles: Option<Spanned<ParticlesParams>>;
         /// Stacking of the particles.
-        lattice: Option<Spanned<LatticeParams>> => "glass, in fewer than three dimensions and with stress points cubic";
+        lattice: Option<Spanned<LatticeParams>> => "glass, in fewer than three dimensions without axial symmetry and with stress points cubic";
         /// Own particle spacing, or how it grows.
         spacing: Option<Spanned<SpacingParams>> => "the case's";
         /// Initial velocity.

@@ -45,17 +45,21 @@ pub fn fit(case: &mut Case) {
         let rings = populate::rings(case, &case.bodies[b]);
         let body = &mut case.bodies[b];
         if body.cloud().is_none() && rings > 0.0 {
-            body.lattice.volume = Some(revolved(body) / rings);
+            body.lattice.volume = Some(revolved(body, &case.symmetry) / rings);
         }
     }
 }
 
-/// Volume (m³) of what turns about the axis: of fine cells, of which those at a face count by their part within it.
-fn revolved(body: &Body) -> f64 {
+/// Volume (m³) of what turns about the axis above the symmetry planes: of fine cells, of which those at a face count by their part within it.
+fn revolved(body: &Body, planes: &[SymmetryPlane]) -> f64 {
     let solid = body.shape.solid(2);
-    let (lower, upper) = solid.bounds();
+    let (mut lower, upper) = solid.bounds();
+    for plane in planes {
+        let least = &mut lower[plane.axis.index()];
+        *least = least.max(plane.position);
+    }
     let step = body.lattice.spacing / FINE;
-    let first = lower.x.max(0.0);
+    let first = lower.x;
     let cells = |from: f64, to: f64| ((to - from) / step).ceil().max(0.0);
     let [across, along] = [cells(first, upper.x), cells(lower.y, upper.y)];
     let [wide, high] = [(upper.x - first) / across, (upper.y - lower.y) / along];
@@ -113,10 +117,6 @@ pub fn check(case: &Case, params: &CaseParams) -> Result<(), Diagnostic> {
         (
             !case.loads.pressures.is_empty(),
             "`[[pressure]]` does not act on them".to_owned(),
-        ),
-        (
-            case.loads.gravity[0] != 0.0,
-            "`gravity` must be along the axis".to_owned(),
         ),
     ];
     if let Some((_, why)) = obstacles.into_iter().find(|(is_there, _)| *is_there) {

@@ -9,9 +9,9 @@ use model::{Axis, Lattice, LatticeKind, Shape, SphForm};
 
 /// Filling of bodies that do not state one: glass, which prefers no direction. In the plane, where
 /// the kernel sums of glass scatter five times as much, and where stress points need rows, a cubic
-/// lattice.
-pub fn default_kind(dimension: usize, form: SphForm) -> LatticeKind {
-    if dimension == 3 && form != SphForm::StressPoints {
+/// lattice. Rings extend in three dimensions.
+pub fn default_kind(extent: usize, form: SphForm) -> LatticeKind {
+    if extent == 3 && form != SphForm::StressPoints {
         LatticeKind::Glass
     } else {
         LatticeKind::Cubic

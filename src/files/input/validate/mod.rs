@@ -78,7 +78,7 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
         case: params,
         materials: &names,
         known: &materials,
-        filling: lattice::default_kind(dimension, sph.form),
+        filling: lattice::default_kind(extent, sph.form),
         smoothing,
         folder,
     }
