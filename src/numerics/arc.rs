@@ -3,7 +3,8 @@
 //! A ring about the second axis, at the radius `r_j`, is seen from a place at `r_i` in the plane of the first two axes.
 //! What lies at an angle θ of it has the distance `d² = d₀² + 4 r_i r_j sin²(θ/2)` with the distance `d₀` in the plane. The
 //! points stand in the middles of equal parts of the arc within the reach, `0 < θ < θ_c`; each counts for its mirror image at
-//! −θ too. Nothing here tells which of the two is the ring and which the place: pairs see each other at the same points.
+//! −θ too. Nothing here tells which of the two is the ring and which the place: pairs see each other at the same points. No operation is fused: contact
+//! takes arcs outside of vector code, where the processor may have none that is.
 
 use crate::lanes::Lanes;
 
@@ -25,7 +26,7 @@ pub struct Arc<V> {
 #[inline(always)]
 fn halved<V: Lanes>([sine, cosine]: [V; 2]) -> [V; 2] {
     let half = V::splat(0.5);
-    let new = cosine.mul_add(half, half).sqrt();
+    let new = cosine.mul(half).add(half).sqrt();
     [sine.mul(half).div(new), new]
 }
 
@@ -67,7 +68,7 @@ impl<V: Lanes> Arc<V> {
             1.0 / 6.0,
             1.0,
         ] {
-            series = series.mul_add(s2, V::splat(term));
+            series = series.mul(s2).add(V::splat(term));
         }
         // θ_c/(4 π) with θ_c = 16 of these.
         let share = sine.mul(series).mul(V::splat(4.0 / std::f64::consts::PI));
@@ -78,7 +79,7 @@ impl<V: Lanes> Arc<V> {
     #[inline(always)]
     pub fn advance(&mut self) {
         let ([s, c], [ds, dc]) = (self.half, self.step);
-        self.half = [c.mul_add(ds, s.mul(dc)), s.neg_mul_add(ds, c.mul(dc))];
+        self.half = [c.mul(ds).add(s.mul(dc)), c.mul(dc).sub(s.mul(ds))];
     }
 
     /// Square of the distance (m²) of the point, of radii (m) and the square of the distance in the plane (m²).
@@ -95,7 +96,7 @@ impl<V: Lanes> Arc<V> {
     pub fn turn(&self) -> [V; 2] {
         let ([s, c], two) = (self.half, V::splat(2.0));
         let twice = s.mul(two);
-        [twice.neg_mul_add(s, V::splat(1.0)), twice.mul(c)]
+        [V::splat(1.0).sub(twice.mul(s)), twice.mul(c)]
     }
 
     /// `r_i e − r_j e(θ)` along the first axis and along the third (m).
@@ -105,7 +106,7 @@ impl<V: Lanes> Arc<V> {
         let ([s, c], two) = (self.half, V::splat(2.0));
         let chord = s.mul(two).mul(r_j);
         [
-            chord.mul_add(s, r_i.sub(r_j)),
+            chord.mul(s).add(r_i.sub(r_j)),
             V::splat(0.0).sub(chord.mul(c)),
         ]
     }
