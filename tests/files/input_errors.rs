@@ -1020,6 +1020,7 @@ shape.box = { lower = [0, 0], upper = ["5 mm", "2 mm"] }
         ),
         ("sph.form=conventional", "`sph.form` must be \"corrected\""),
         ("sph.xsph=0.1", "`sph.xsph` is not theirs"),
+        ("fragments={}", "`fragments` does not tell them apart"),
         ("contact.mode=penalty", "`contact.mode` must be"),
         (
             "gravity=[\"1 m/s^2\", 0]",

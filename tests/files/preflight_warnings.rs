@@ -406,3 +406,25 @@ fn bodies_that_leave_what_they_touch_are_told() {
     // Sliding is no leaving.
     assert_told(&[touch, "body.bar.velocity=[\"100 m/s\", 0]"], &[]);
 }
+
+#[test]
+fn clouds_of_rings_are_told() {
+    let text = |more: &str| {
+        format!(
+            "dimension = 2\naxisymmetric = true\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n\
+             material.metal.library = \"aluminium-2024-ductile\"\n\
+             [[body]]\nname = \"plate\"\nmaterial = \"metal\"\n\
+             shape.box = {{ lower = [0, 0], upper = [\"60 mm\", \"10 mm\"] }}\n\
+             [[body]]\nname = \"ball\"\nmaterial = \"metal\"\nvelocity = [0, \"-5 km/s\"]\n\
+             shape.sphere = {{ radius = \"6 mm\", centre = [0, \"18 mm\"] }}\n{more}"
+        )
+    };
+    let wall = "[[body]]\nname = \"wall\"\nmaterial = \"metal\"\n\
+                shape.box = { lower = [0, \"-60 mm\"], upper = [\"60 mm\", \"-50 mm\"] }\n";
+    let drills = |text: &str| {
+        let case = parse("test.toml", text, &[]).expect("a case");
+        let said = warnings(&case, &approaches(&case));
+        said.iter().any(|line| line.contains("one of rings"))
+    };
+    assert!(!drills(&text("")) && drills(&text(wall)));
+}

@@ -184,6 +184,11 @@ impl Loaded {
             .text("/whipple/input")
             .map_err(|error| error.to_string());
         let case = case.and_then(|text| read_case(path, &text));
+        if case.as_ref().is_ok_and(|case| case.axisymmetric) {
+            return Err(
+                reader.wrong("its particles are rings about an axis, which are no fragments")
+            );
+        }
         let body = reader.body(bodies.len())?;
         let mass = reader.field("mass", 1)?;
         let count = reader.file.particles();

@@ -124,7 +124,7 @@ impl Part {
             m * x[2],
             1.0,
         ]);
-        self.reach(x, thermal / density, case.dimension);
+        self.reach(x, thermal / density / case.around(x), case.dimension);
         let pressure = particles.pressure[i];
         let extremes = [v, &v.map(|c| -c), &[speed, pressure, -pressure]];
         let last = [temperature, particles.plastic_strain[i]];

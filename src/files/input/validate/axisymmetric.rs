@@ -115,6 +115,10 @@ pub fn check(case: &Case, params: &CaseParams) -> Result<(), Diagnostic> {
             "`measure.region` does not read them".to_owned(),
         ),
         (
+            params.fragments.is_some(),
+            "`fragments` does not tell them apart".to_owned(),
+        ),
+        (
             !case.loads.pressures.is_empty(),
             "`[[pressure]]` does not act on them".to_owned(),
         ),
