@@ -68,13 +68,13 @@ fn revolved(body: &Body, planes: &[SymmetryPlane]) -> f64 {
         clippy::cast_sign_loss,
         reason = "cells of a shape"
     )]
-    let [across, along] = [across as usize, along as usize];
+    let [across, along] = [across as u32, along as u32];
     let mut volume = 0.0;
     for n in 0..across {
         let mut filled = 0.0;
-        let radius = first + (n as f64 + 0.5) * wide;
+        let radius = first + (f64::from(n) + 0.5) * wide;
         for m in 0..along {
-            let at = Vec3::new(radius, lower.y + (m as f64 + 0.5) * high, 0.0);
+            let at = Vec3::new(radius, lower.y + (f64::from(m) + 0.5) * high, 0.0);
             filled += (0.5 - solid.distance(&at) / step).clamp(0.0, 1.0);
         }
         volume += std::f64::consts::TAU * radius * wide * high * filled;
