@@ -7,7 +7,7 @@ use super::output_format::{self, OutputFormat, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use engine::measure::{Findings, Matter, Revolved, Told, findings, mirrors, remember};
+use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
 use files::FileOpener;
 use files::input::{self, InputError};
 use files::output::h5::Content;
@@ -102,9 +102,7 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let mut remembered = match &first {
         Some(path) => {
             let first = Loaded::read(path, &args.set)?;
-            let matter = first.particles();
-            let revolved = Revolved::of(&matter);
-            remember(&revolved.as_ref().map_or(matter, Revolved::matter), &comm)
+            remember(&first.particles(), &comm)
         }
         None => Vec::new(),
     };
@@ -112,10 +110,13 @@ fn evaluate(args: &MeasureArgs) -> Result<String, MeasureError> {
     let mut text = String::new();
     for path in &paths {
         let loaded = Loaded::read(path, &args.set)?;
-        let matter = loaded.particles();
-        let revolved = Revolved::of(&matter);
-        let matter = revolved.as_ref().map_or(matter, Revolved::matter);
-        let measured = findings(loaded.time, &mut remembered, None, &matter, &comm);
+        let measured = findings(
+            loaded.time,
+            &mut remembered,
+            None,
+            &loaded.particles(),
+            &comm,
+        );
         text = report(&loaded, loaded.case.measure.measures.iter().zip(&measured));
         evaluated.push((loaded.case, loaded.time, measured));
     }

@@ -5,6 +5,7 @@ use super::figure::Findings;
 use super::gauges::Gauges;
 use super::matter::Matter;
 use super::remains::Remains;
+use super::revolved::Revolved;
 use super::witness::Witnesses;
 use super::{bar, debris, front, plate, target, whole, zone};
 use crate::diagnose::Remembered;
@@ -57,6 +58,8 @@ fn impulse(slab: &Slab, matter: &Matter, comm: &Comm) -> f64 {
 /// Memory of measures of the start. Collective.
 #[must_use]
 pub fn remember(matter: &Matter, comm: &Comm) -> Vec<Remembered> {
+    let revolved = Revolved::of(matter);
+    let matter = &revolved.as_ref().map_or(*matter, Revolved::matter);
     let all = matter.case.measure.measures.iter();
     let of = |kind: &MeasureKind| match kind {
         MeasureKind::Plate(slab) | MeasureKind::Target(slab) => Some(impulse(slab, matter, comm)),
@@ -94,6 +97,11 @@ pub fn findings(
     matter: &Matter,
     comm: &Comm,
 ) -> Vec<Findings> {
+    let revolved = Revolved::of(matter);
+    let (matter, particles) = match &revolved {
+        Some(revolved) => (&revolved.matter(), None),
+        None => (matter, particles),
+    };
     let measures = &matter.case.measure.measures;
     // Of a run that was begun with others nothing is known.
     if remembered.len() != measures.len() {

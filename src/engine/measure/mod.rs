@@ -41,6 +41,5 @@ pub use kept::{Measures, findings, mark_zones, remember};
 pub use ledgers::whole_state;
 pub use matter::{Matter, mirrors};
 pub use reading::Reading;
-pub use revolved::Revolved;
 pub use whole::Whole;
 pub use witness::{Crossing, Witnesses};

@@ -3,7 +3,7 @@
 use crate::contact::ContactTable;
 use crate::diagnose::{KeptTotals, RunState, StepSums, Totals, angular_momentum_scale};
 use crate::loads::Loads;
-use crate::measure::{self, Matter, Measures, Revolved};
+use crate::measure::{self, Matter, Measures};
 use comm::Comm;
 use model::Case;
 use particles::neighbours::Lists;
@@ -96,8 +96,6 @@ impl Accounts {
         gauges.mark(particles, &state.gauge_carriers);
         measure::mark_zones(case, particles);
         let matter = Matter::of(case, mirrors, particles);
-        let revolved = Revolved::of(&matter);
-        let matter = revolved.as_ref().map_or(matter, Revolved::matter);
         state.remembered = measure::remember(&matter, comm);
         self.measures.witnesses.begin(particles);
     }

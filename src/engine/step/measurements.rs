@@ -3,7 +3,7 @@
 use super::accounts::TotalsInputs;
 use super::simulation::Simulation;
 use crate::diagnose::RunState;
-use crate::measure::{self, BodyFigures, Crossing, Findings, GaugeRow, Matter, Revolved, Whole};
+use crate::measure::{self, BodyFigures, Crossing, Findings, GaugeRow, Matter, Whole};
 use comm::Comm;
 use model::Cadence;
 
@@ -62,12 +62,7 @@ pub fn findings(simulation: &mut Simulation, comm: &Comm) -> Vec<Findings> {
     } = simulation;
     let matter = Matter::of(case, space.halo.mirrors(), particles);
     let (time, remembered) = (state.time, &mut state.remembered);
-    let revolved = Revolved::of(&matter);
-    let (matter, particles) = match &revolved {
-        Some(revolved) => (revolved.matter(), None),
-        None => (matter, Some(&*particles)),
-    };
-    measure::findings(time, remembered, particles, &matter, comm)
+    measure::findings(time, remembered, Some(particles), &matter, comm)
 }
 
 /// Readings of the gauges that are due, right after a step. Collective.

@@ -172,7 +172,7 @@ pub fn loads_of(
     ranks_per_node: usize,
     bytes: &[usize],
 ) -> Vec<Load> {
-    let mirrors = Mirrors::new(&case.symmetry);
+    let mirrors = Mirrors::of(case);
     let mut loads = vec![Load::default(); slabs.ranks()];
     let all = (particles.positions.as_slice(), particles.reach.as_slice());
     let mut send = |from: usize, to: usize, traffic: Traffic| {

@@ -33,8 +33,9 @@ pub fn axisymmetric(
     Ok(true)
 }
 
-/// Cells across a spacing, of the sums over a shape.
+/// Cells across a spacing, of the sums over a shape, and the most across the shape.
 const FINE: f64 = 6.0;
+const MOST_CELLS: f64 = 2000.0;
 
 /// Gives the particles of bodies the areas with which their rings have the volume of the shape about the axis.
 pub fn fit(case: &mut Case) {
@@ -58,8 +59,9 @@ fn revolved(body: &Body, planes: &[SymmetryPlane]) -> f64 {
         let least = &mut lower[plane.axis.index()];
         *least = least.max(plane.position);
     }
-    let step = body.lattice.spacing / FINE;
     let first = lower.x;
+    let widest = (upper.x - first).max(upper.y - lower.y);
+    let step = (body.lattice.spacing / FINE).max(widest / MOST_CELLS);
     let cells = |from: f64, to: f64| ((to - from) / step).ceil().max(0.0);
     let [across, along] = [cells(first, upper.x), cells(lower.y, upper.y)];
     let [wide, high] = [(upper.x - first) / across, (upper.y - lower.y) / along];
