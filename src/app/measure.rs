@@ -7,7 +7,7 @@ use super::output_format::{self, OutputFormat, wrote};
 use super::results::{ResultsError, only_part};
 use super::which::Which;
 use comm::Comm;
-use engine::measure::{Findings, Matter, Told, findings, mirrors, remember};
+use engine::measure::{Findings, HeldMatter, Matter, Told, findings, remember};
 use files::FileOpener;
 use files::input::{self, InputError};
 use files::output::h5::Content;
@@ -185,14 +185,7 @@ struct Loaded {
     case: Case,
     /// Time (s).
     time: f64,
-    body: Vec<u32>,
-    position: Vec<[f64; 3]>,
-    velocity: Vec<[f64; 3]>,
-    mass: Vec<f64>,
-    density: Vec<f64>,
-    pressure: Vec<f64>,
-    plastic_strain: Vec<f64>,
-    damage: Vec<f64>,
+    held: HeldMatter,
 }
 
 impl Loaded {
@@ -237,8 +230,7 @@ impl Loaded {
             known.ok_or_else(|| wrong(format!("body {value} of {bodies} bodies")))
         };
         let body = field("body", 1)?.into_iter().map(index);
-        let mut loaded = Self {
-            time: file.time().map_err(read_error)?,
+        let mut held = HeldMatter {
             body: body.collect::<Result<_, _>>()?,
             position: file.points(0..count).map_err(read_error)?,
             velocity: field("velocity", 3)?.as_chunks::<3>().0.to_vec(),
@@ -247,45 +239,36 @@ impl Loaded {
             pressure: field("pressure", 1)?,
             plastic_strain: field("plastic_strain", 1)?,
             damage: field("damage", 1)?,
-            case,
         };
-        loaded.leave_out(&field("frozen", 1)?);
-        Ok(loaded)
-    }
-
-    /// Frozen particles are of the model no more.
-    fn leave_out(&mut self, frozen: &[f64]) {
-        if frozen.iter().all(|&is| is == 0.0) {
-            return;
-        }
-        keep(&mut self.body, frozen);
-        keep(&mut self.position, frozen);
-        keep(&mut self.velocity, frozen);
-        for values in [
-            &mut self.mass,
-            &mut self.density,
-            &mut self.pressure,
-            &mut self.plastic_strain,
-            &mut self.damage,
-        ] {
-            keep(values, frozen);
-        }
+        leave_out(&mut held, &field("frozen", 1)?);
+        Ok(Self {
+            time: file.time().map_err(read_error)?,
+            case,
+            held,
+        })
     }
 
     fn particles(&self) -> Matter<'_> {
-        Matter {
-            case: &self.case,
-            mirrors: mirrors(&self.case),
-            body: &self.body,
-            position: &self.position,
-            velocity: &self.velocity,
-            mass: &self.mass,
-            stress_mass: &[],
-            density: &self.density,
-            pressure: &self.pressure,
-            plastic_strain: &self.plastic_strain,
-            damage: &self.damage,
-        }
+        self.held.of(&self.case)
+    }
+}
+
+/// Frozen particles are of the model no more.
+fn leave_out(held: &mut HeldMatter, frozen: &[f64]) {
+    if frozen.iter().all(|&is| is == 0.0) {
+        return;
+    }
+    keep(&mut held.body, frozen);
+    keep(&mut held.position, frozen);
+    keep(&mut held.velocity, frozen);
+    for values in [
+        &mut held.mass,
+        &mut held.density,
+        &mut held.pressure,
+        &mut held.plastic_strain,
+        &mut held.damage,
+    ] {
+        keep(values, frozen);
     }
 }
 

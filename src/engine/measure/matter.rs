@@ -38,6 +38,47 @@ pub struct Matter<'a> {
     pub damage: &'a [f64],
 }
 
+/// Matter that is kept apart from a store, without stress points.
+#[derive(Debug, Default)]
+pub struct HeldMatter {
+    /// Indices of bodies.
+    pub body: Vec<u32>,
+    /// Positions (m).
+    pub position: Vec<[f64; 3]>,
+    /// Velocities (m/s).
+    pub velocity: Vec<[f64; 3]>,
+    /// Masses (kg).
+    pub mass: Vec<f64>,
+    /// Densities (kg/m³).
+    pub density: Vec<f64>,
+    /// Pressures (Pa).
+    pub pressure: Vec<f64>,
+    /// Equivalent plastic strains.
+    pub plastic_strain: Vec<f64>,
+    /// Damage; empty if nothing may fail.
+    pub damage: Vec<f64>,
+}
+
+impl HeldMatter {
+    /// As measures take it, of a case.
+    #[must_use]
+    pub fn of<'a>(&'a self, case: &'a Case) -> Matter<'a> {
+        Matter {
+            case,
+            mirrors: Mirrors::of(case),
+            body: &self.body,
+            position: &self.position,
+            velocity: &self.velocity,
+            mass: &self.mass,
+            stress_mass: &[],
+            density: &self.density,
+            pressure: &self.pressure,
+            plastic_strain: &self.plastic_strain,
+            damage: &self.damage,
+        }
+    }
+}
+
 impl<'a> Matter<'a> {
     /// The owned particles of a store.
     #[must_use]
@@ -216,10 +257,4 @@ impl<'a> Matter<'a> {
 /// Raises a largest value. What is no number has been refused by the choice of the step; zero has one sign.
 pub fn raise(most: &mut f64, value: f64) {
     *most = if value > *most { value + 0.0 } else { *most };
-}
-
-/// The symmetry planes of a case.
-#[must_use]
-pub fn mirrors(case: &Case) -> Mirrors {
-    Mirrors::of(case)
 }

@@ -39,7 +39,7 @@ pub use figure::{Distribution, Figure, Findings, Told};
 pub use gauges::{GaugeRow, Gauges};
 pub use kept::{Measures, findings, mark_zones, remember};
 pub use ledgers::whole_state;
-pub use matter::{Matter, mirrors};
+pub use matter::{HeldMatter, Matter};
 pub use reading::Reading;
 pub use whole::Whole;
 pub use witness::{Crossing, Witnesses};

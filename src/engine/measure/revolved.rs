@@ -1,22 +1,13 @@
 //! The matter of an axisymmetric case in space, as measures of holes, craters and clouds look at it: a quarter of each
 //! ring, as particles as wide as the ring is.
 
-use super::matter::Matter;
+use super::matter::{HeldMatter, Matter};
 use model::Case;
-use particles::Mirrors;
 
 /// Matter of a quarter of the model in space.
 pub struct Revolved {
     case: Case,
-    mirrors: Mirrors,
-    body: Vec<u32>,
-    position: Vec<[f64; 3]>,
-    velocity: Vec<[f64; 3]>,
-    mass: Vec<f64>,
-    density: Vec<f64>,
-    pressure: Vec<f64>,
-    plastic_strain: Vec<f64>,
-    damage: Vec<f64>,
+    held: HeldMatter,
 }
 
 impl Revolved {
@@ -26,18 +17,9 @@ impl Revolved {
         if !flat.case.axisymmetric {
             return None;
         }
-        let case = flat.case.revolved();
         let mut space = Self {
-            mirrors: Mirrors::of(&case),
-            case,
-            body: Vec::new(),
-            position: Vec::new(),
-            velocity: Vec::new(),
-            mass: Vec::new(),
-            density: Vec::new(),
-            pressure: Vec::new(),
-            plastic_strain: Vec::new(),
-            damage: Vec::new(),
+            case: flat.case.revolved(),
+            held: HeldMatter::default(),
         };
         for i in 0..flat.len() {
             space.add(flat, i);
@@ -54,6 +36,7 @@ impl Revolved {
         let area = 0.25 * flat.volume(i) / arc.max(f64::MIN_POSITIVE);
         let count = (arc / area.sqrt()).round().max(1.0);
         let mass = 0.25 * flat.mass[i] / count;
+        let held = &mut self.held;
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
@@ -62,32 +45,20 @@ impl Revolved {
         for n in 0..count as u32 {
             let angle = quarter * (f64::from(n) + 0.5) / count;
             let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
-            self.body.push(flat.body[i]);
-            self.position.push([x * cosine, y, x * sine]);
-            self.velocity.push([across * cosine, along, across * sine]);
-            self.mass.push(mass);
-            self.density.push(flat.density[i]);
-            self.pressure.push(flat.pressure[i]);
-            self.plastic_strain.push(flat.plastic_strain[i]);
-            self.damage.extend(flat.damage.get(i));
+            held.body.push(flat.body[i]);
+            held.position.push([x * cosine, y, x * sine]);
+            held.velocity.push([across * cosine, along, across * sine]);
+            held.mass.push(mass);
+            held.density.push(flat.density[i]);
+            held.pressure.push(flat.pressure[i]);
+            held.plastic_strain.push(flat.plastic_strain[i]);
+            held.damage.extend(flat.damage.get(i));
         }
     }
 
     /// As measures take it.
     #[must_use]
     pub fn matter(&self) -> Matter<'_> {
-        Matter {
-            case: &self.case,
-            mirrors: self.mirrors,
-            body: &self.body,
-            position: &self.position,
-            velocity: &self.velocity,
-            mass: &self.mass,
-            stress_mass: &[],
-            density: &self.density,
-            pressure: &self.pressure,
-            plastic_strain: &self.plastic_strain,
-            damage: &self.damage,
-        }
+        self.held.of(&self.case)
     }
 }
