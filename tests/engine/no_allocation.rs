@@ -132,7 +132,12 @@ fn check_all() {
     project::enter();
     ON.store(true, Ordering::Relaxed);
     let comm = Comm::solo();
-    // The pool of threads is there before anything is counted.
+    // As `whipple run` has it: the thread that calls is one of the pool's, so that its jobs do not
+    // pass a queue that allocates. Two on any machine, so that what is held has one size.
+    (rayon::ThreadPoolBuilder::new().num_threads(2))
+        .use_current_thread()
+        .build_global()
+        .expect("the first pool of this process");
     rayon::join(|| (), || ());
     check(&comm, CASE, &[]);
     let free = CASE
@@ -180,8 +185,8 @@ fn check(comm: &Comm, text: &str, set: &[String]) {
         simulation.advance(comm).expect("a step");
     }
     let allocations = COUNT.load(Ordering::Relaxed) - before;
-    // The thread pool now and then adds a block of 63 jobs to a queue; nothing else may.
-    assert!(allocations <= 20, "{allocations} allocations in 20 steps");
+    // The pool's queues now and then grow or shrink where its threads wait for a core; nothing else may.
+    assert!(allocations < 20, "{allocations} allocations in 20 steps");
 
     #[allow(clippy::cast_precision_loss, reason = "small")]
     let told =
