@@ -237,6 +237,25 @@ fn the_case_is_read_before_threads_are_started() {
     assert!(said.starts_with("error: `alpha` must be"), "{said}");
 }
 
+/// A body whose particles are looked at as the case is read: its filling is fitted, and what it begins with varies.
+#[test]
+fn what_varies_leaves_the_threads_to_the_run() {
+    let place = tempfile::tempdir().unwrap();
+    let mut run = coarse_run(1, &place.path().join("run"));
+    run.args(["--until", "0us", "-t", "1", "--set", "symmetry=[]"]);
+    run.args(["--set", "body.sphere.lattice=glass"]);
+    run.args([
+        "--set",
+        "body.sphere.velocity=[0, 0, \"-7 km/s * (1 + x / 1 m)\"]",
+    ]);
+    let ended = end(&mut run).with_code(0);
+    assert!(
+        ended.complaints("warning: rank 0 cannot start").is_empty(),
+        "{ended:#?}"
+    );
+    assert!(ended.stdout.contains("1 thread"), "{ended:#?}");
+}
+
 #[test]
 fn more_threads_than_cores_are_told() {
     let place = tempfile::tempdir().unwrap();
