@@ -342,6 +342,16 @@ fn plates_are_judged_by_what_is_clear() {
         );
         let deciding = number(&found, "deciding_spacing");
         assert!(deciding == hole / 4.0 || word == "perforated" && deciding.is_nan());
+        // What has bent away from the middle of the plate is no hole there.
+        let middle = number(&found, "mid_plane_hole_diameter");
+        assert!(
+            if deep > 0.0 {
+                middle.is_nan()
+            } else {
+                middle == hole
+            },
+            "{middle}"
+        );
         is(
             &found,
             "dish_depth",

@@ -274,7 +274,7 @@ struct Shape {
     /// Diameter (m) of the largest rod along the normal that passes; zero unless it is open.
     hole: f64,
     /// Diameters (m) of circles with the area of what one sees through, and of what is open half way between the
-    /// faces; zero unless it is open.
+    /// faces; zero unless it is open. The latter is not a number where most of that is a plate that has bent away.
     opening: f64,
     middle: f64,
     lips: [Lip; 2],
@@ -294,7 +294,12 @@ impl Shape {
         let rod = open.inside().largest_disc();
         let hole = open.largest_inside();
         let middle = 0.5 * (slab.front + slab.rear);
+        let bent_by = |[low, high]: [f64; 2]| f64::min(slab.rear - low, slab.front - high);
         let at_middle = attached.open_between(middle, middle).largest_inside();
+        let ends: Vec<_> = attached.ends().collect();
+        let half = 0.5 * (slab.front - slab.rear);
+        let has_left = |&cell: &usize| ends[cell].is_some_and(|ends| bent_by(ends) > half);
+        let left_middle = at_middle.cells().filter(has_left).count();
         let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
         let raised = [
             attached.filled_between(above, f64::MAX),
@@ -311,14 +316,13 @@ impl Shape {
                 Lip::NONE
             }
         });
-        let [front, rear, dish] = attached.ends().flatten().fold(
+        let [front, rear, dish] = ends.iter().copied().flatten().fold(
             [0.0; 3],
             |[front, rear, dish]: [f64; 3], [low, high]| {
-                let (above, below) = (high - slab.front, slab.rear - low);
                 [
-                    front.max(above),
-                    rear.max(below),
-                    dish.max(below.min(-above)),
+                    front.max(high - slab.front),
+                    rear.max(slab.rear - low),
+                    dish.max(bent_by([low, high])),
                 ]
             },
         );
@@ -327,7 +331,11 @@ impl Shape {
             open: is_open,
             hole: width(rod),
             opening,
-            middle: width(at_middle.count()),
+            middle: if 2 * left_middle > at_middle.count() {
+                f64::NAN
+            } else {
+                width(at_middle.count())
+            },
             lips,
             heights: [front, rear],
             dish,
