@@ -106,15 +106,14 @@ pub struct Faded<V> {
     pub one: Symmetric<V>,
 }
 
-/// `(1 + e⁴) (M⁴ + e⁴ I)⁻¹ M³` and its product with M, of `fade = e⁴`.
+/// `(1 + e⁴) (M⁴ + e⁴ I)⁻¹ M³` and its product with M, of `fade = e⁴` in each lane.
 #[inline(always)]
 #[must_use]
-pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
+pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: V) -> Faded<V> {
     let square = product(m, m);
     let (third, fourth) = (product(&square, m), product(&square, &square));
-    let least = V::splat(fade);
     let [mut xx, mut yy, mut zz, xy, xz, yz] = fourth;
-    (xx, yy, zz) = (xx.add(least), yy.add(least), zz.add(least));
+    (xx, yy, zz) = (xx.add(fade), yy.add(fade), zz.add(fade));
     let adjugate = [
         minor(yy, zz, yz, yz),
         minor(xx, zz, xz, xz),
@@ -124,7 +123,7 @@ pub fn faded<V: Lanes>(m: &Symmetric<V>, fade: f64) -> Faded<V> {
         minor(xy, xz, xx, yz),
     ];
     let determinant = xz.mul_add(adjugate[4], xy.mul_add(adjugate[3], xx.mul(adjugate[0])));
-    let scale = V::splat(1.0 + fade).div(determinant);
+    let scale = V::splat(1.0).add(fade).div(determinant);
     let mut inverse = adjugate;
     for c in 0..6 {
         inverse[c] = inverse[c].mul(scale);

@@ -7,7 +7,7 @@
 //! `B = (1 + e⁴) (M⁴ + e⁴ I)⁻¹ M³`, `A = M B`,
 //!
 //! of which B is `M⁻¹` where neighbours are complete and fades out where they are few, or stand in
-//! a plane or a row: no entry of its frame exceeds .57/e. Then
+//! a plane or a row: no entry of its frame exceeds .57/e. At faces e is larger than inside. Then
 //!
 //! `D = sym(A L₀ B)`, `P = A σ B`, `f_i = Σ V_i V_j (P_i + P_j) ∇W_ij`
 //!
@@ -16,31 +16,24 @@
 //! of `Σ V_i A_i σ_i A_i`, which is none. The spin, which does no work, is that of the neighbourhood.
 
 mod forces;
+mod moments;
 mod motion;
 
 pub use forces::CorrectedRecord;
 
 use super::limiter::Limiter;
 use super::neighbourhood::Neighbourhood;
+pub(crate) use moments::{Moments, add_moment};
 pub(crate) use motion::spin;
 use motion::{PlainSums, motion};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
-use numerics::lane_matrix::{Faded, between, faded, load_all, store_all};
-use numerics::lanes::{F64x8, LANES, Lanes};
+use numerics::lane_matrix::{between, load_all, store_all};
+use numerics::lanes::{F64x8, Lanes};
 
-/// e⁴ of the fade, at e = .28. Less gives isolated peaks of strain about edges, more leaves
-/// surfaces uncorrected.
-const FADE: f64 = 0.28 * 0.28 * 0.28 * 0.28;
-
-/// The same of bodies that deform without tearing: in the total form, and of rings about an axis, which have no such form. At
-/// e = .15 a layer at a face is strained by 1 % less than a linear field says, at e = .28 by 16 %.
+/// e⁴ of the fade inside a body, where neighbours are on all sides, and everywhere in the total form, which does not tear:
+/// e = .15. A layer at a face is strained by 1 % less than a linear field says, at e = .28 by 16 %.
 pub(crate) const LATE_FADE: f64 = 0.15 * 0.15 * 0.15 * 0.15;
-
-/// e⁴ of the fade between particles of a scale.
-const fn fade<S: PairScale>() -> f64 {
-    if S::RING { LATE_FADE } else { FADE }
-}
 
 /// The corrections of eight particles; components xx, yy, zz, xy, xz, yz.
 #[derive(Debug, Clone, Copy)]
@@ -52,14 +45,12 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// From moments `M` between particles of a scale.
+    /// Of a lane that takes none.
     #[inline(always)]
-    #[must_use]
-    pub fn new<V: Lanes, S: PairScale>(m: &[F64x8; 6]) -> Self {
-        let Faded { inverse, one } = faded(&load_all::<V, 6>(m), fade::<S>());
-        Self {
-            outer: store_all(&one),
-            inner: store_all(&inverse),
+    fn clear(&mut self, lane: usize) {
+        for (c, value) in [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
+            self.outer[c].0[lane] = value;
+            self.inner[c].0[lane] = value;
         }
     }
 
@@ -69,19 +60,6 @@ impl Correction {
     pub fn apply<V: Lanes>(&self, t: &[V; 9]) -> [V; 9] {
         between(&load_all(&self.outer), t, &load_all(&self.inner))
     }
-}
-
-/// Adds the moments of pairs at `r = x_i − x_j` with `∇W = factor r`; gives V ∇W.
-#[inline(always)]
-pub(crate) fn add_moment<V: Lanes>(moment: &mut [V; 6], r: &[V; 3], factor: V) -> [V; 3] {
-    let steep = [r[0].mul(factor), r[1].mul(factor), r[2].mul(factor)];
-    for a in 0..3 {
-        moment[a] = r[a].neg_mul_add(steep[a], moment[a]);
-    }
-    moment[3] = r[0].neg_mul_add(steep[1], moment[3]);
-    moment[4] = r[0].neg_mul_add(steep[2], moment[4]);
-    moment[5] = r[1].neg_mul_add(steep[2], moment[5]);
-    steep
 }
 
 /// The first sweep over the pairs of eight receivers.
@@ -113,25 +91,18 @@ impl<S: PairScale> Vectorised for CorrectedGradient<'_, S> {
 
     #[inline(always)]
     fn run<V: Lanes>(self) -> Corrected {
-        let mut plain = self.sums::<V>();
-        for axis in self.dimension..3 {
-            plain.moment[axis] = V::splat(1.0);
-        }
-        let mut m = store_all(&plain.moment);
-        if self.plain != 0 {
-            for k in (0..LANES).filter(|k| self.plain >> k & 1 == 1) {
-                for (c, value) in [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
-                    m[c].0[k] = value;
-                }
-            }
-        }
-        let correction = Correction::new::<V, S>(&m);
+        let plain = self.sums::<V>();
+        let correction = plain.moments.correction::<S>(self.plain);
         let corrected = correction.apply(&plain.gradient);
         let motion = motion(&corrected, &plain, &load_all(&correction.inner));
         Corrected {
             gradient: store_all(&motion.gradient),
             rest: store_all(&motion.rest),
-            limiter: Limiter::new(&motion.gradient, &motion.rest, plain.square_length()),
+            limiter: Limiter::new(
+                &motion.gradient,
+                &motion.rest,
+                plain.moments.square_length(),
+            ),
             correction,
         }
     }
@@ -142,19 +113,16 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
     fn sums<V: Lanes>(&self) -> PlainSums<V> {
         let zero = V::splat(0.0);
         let (position, velocity) = self.around.motion::<V>();
-        let (mut gradient, mut moment) = ([zero; 9], [zero; 6]);
-        let (mut mean_velocity, mut place) = ([zero; 3], [zero; 3]);
-        let mut square = zero;
+        let (mut gradient, mut mean_velocity) = ([zero; 9], [zero; 3]);
+        let mut moments = Moments::none();
         for pair in self.around.pairs(&position) {
-            let (r, volume, there) = (pair.separation.r, pair.volume(), pair.velocity());
-            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = add_moment(&mut moment, &r, factor);
-            let weight = factor.mul(pair.separation.square);
-            square = pair.separation.square.mul_add(weight, square);
+            let (volume, there) = (pair.volume(), pair.velocity());
+            let separation = &pair.separation;
+            let factor = separation.inverse.mul(volume).mul(pair.kernel.slope);
+            let (steep, weight) = moments.add(&separation.r, separation.square, factor);
             for a in 0..3 {
                 let v_a = there[a].sub(velocity[a]);
                 mean_velocity[a] = v_a.mul_add(weight, mean_velocity[a]);
-                place[a] = r[a].mul_add(weight, place[a]);
                 for b in 0..3 {
                     let sum = &mut gradient[3 * a + b];
                     *sum = v_a.mul_add(steep[b], *sum);
@@ -162,17 +130,12 @@ impl<S: PairScale> CorrectedGradient<'_, S> {
             }
         }
         Neighbourhood::<S>::mirror_tensor(&mut gradient);
-        Neighbourhood::<S>::mirror_symmetric(&mut moment);
         Neighbourhood::<S>::mirror(&mut mean_velocity);
-        Neighbourhood::<S>::mirror(&mut place);
-        let [xx, yy, zz, ..] = moment;
+        moments.complete::<S>(self.dimension);
         PlainSums {
             gradient,
-            moment,
+            moments,
             velocity: mean_velocity,
-            place,
-            square,
-            weight: zero.sub(xx.add(yy).add(zz)),
         }
     }
 }
@@ -215,7 +178,7 @@ mod tests {
             dimension: 3,
             plain: 0,
         };
-        let moments = sums.sums::<F64x8>().moment;
+        let moments = sums.sums::<F64x8>().moments.second;
         for k in 0..5 {
             let m = moments.map(|m| m.0[k]);
             assert!(m[..3].iter().all(|m| (m - 1.0).abs() < 0.08), "{k}: {m:?}");

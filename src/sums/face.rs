@@ -8,12 +8,12 @@
 //! is the acceleration by it: nothing inside, and on a flat face of the area S altogether S, towards the inside. A body under a
 //! pressure on all sides that has the same pressure inside is at rest to rounding.
 
-use super::corrected::{Correction, add_moment};
+use super::corrected::Moments;
 use super::neighbourhood::{Neighbourhood, gather, gather_at, records};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
 use numerics::lane_matrix::{along, full, load_all, product, store_all};
-use numerics::lanes::{F64x8, LANES, Lanes};
+use numerics::lanes::{F64x8, Lanes};
 
 /// The sums of `G` over pairs.
 pub struct FaceCorrection<'a, S> {
@@ -32,23 +32,14 @@ impl<S: PairScale> Vectorised for FaceCorrection<'_, S> {
     #[inline(always)]
     fn run<V: Lanes>(self) -> [F64x8; 6] {
         let (position, _) = self.around.motion::<V>();
-        let mut moment = [V::splat(0.0); 6];
+        let mut moments = Moments::none();
         for pair in self.around.pairs(&position) {
-            let volume = pair.volume();
-            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            add_moment(&mut moment, &pair.separation.r, factor);
+            let (separation, volume) = (&pair.separation, pair.volume());
+            let factor = separation.inverse.mul(volume).mul(pair.kernel.slope);
+            moments.add(&separation.r, separation.square, factor);
         }
-        Neighbourhood::<S>::mirror_symmetric(&mut moment);
-        for axis in self.dimension..3 {
-            moment[axis] = V::splat(1.0);
-        }
-        let mut m = store_all(&moment);
-        for k in (0..LANES).filter(|k| self.plain >> k & 1 == 1) {
-            for (c, value) in [1.0, 1.0, 1.0, 0.0, 0.0, 0.0].into_iter().enumerate() {
-                m[c].0[k] = value;
-            }
-        }
-        let correction = Correction::new::<V, S>(&m);
+        moments.complete::<S>(self.dimension);
+        let correction = moments.correction::<S>(self.plain);
         let (outer, inner) = (load_all(&correction.outer), load_all(&correction.inner));
         store_all(&product::<V>(&outer, &inner))
     }

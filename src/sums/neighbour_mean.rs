@@ -5,11 +5,11 @@
 //!
 //! with the gradient `g_i = B_i Σ V_j (s_j − s_i) ∇W_ij` of the corrected form. The particle itself has no weight.
 
-use super::corrected::{Correction, add_moment};
+use super::corrected::Moments;
 use super::neighbourhood::{Neighbourhood, gather_at};
 use numerics::dispatch::Vectorised;
 use numerics::kernel::PairScale;
-use numerics::lane_matrix::{along, full, load_all, store_all};
+use numerics::lane_matrix::{along, full, load_all};
 use numerics::lanes::{F64x8, Lanes};
 
 /// The sums over pairs.
@@ -32,37 +32,29 @@ impl<S: PairScale> Vectorised for NeighbourMean<'_, S> {
         let (position, _) = self.around.motion::<V>();
         let finite = |value: f64| if value == f64::INFINITY { 0.0 } else { value };
         let own: V = gather_at(&self.around.receivers, |place| finite(self.values[place]));
-        let (mut gradient, mut moment, mut place) = ([zero; 3], [zero; 6], [zero; 3]);
-        let (mut sum, mut weights) = (zero, zero);
+        let (mut gradient, mut sum) = ([zero; 3], zero);
+        let mut moments = Moments::none();
         for pair in self.around.pairs(&position) {
             if self.values[pair.index] == f64::INFINITY {
                 continue;
             }
-            let r = pair.separation.r;
-            let volume = pair.volume();
-            let factor = pair.separation.inverse.mul(volume).mul(pair.kernel.slope);
-            let steep = add_moment(&mut moment, &r, factor);
-            let weight = factor.mul(pair.separation.square);
+            let (separation, volume) = (&pair.separation, pair.volume());
+            let factor = separation.inverse.mul(volume).mul(pair.kernel.slope);
+            let (steep, weight) = moments.add(&separation.r, separation.square, factor);
             let beyond = V::splat(self.values[pair.index]).sub(own);
             sum = weight.mul_add(beyond, sum);
-            weights = weights.add(weight);
             for a in 0..3 {
                 gradient[a] = steep[a].mul_add(beyond, gradient[a]);
-                place[a] = weight.mul_add(r[a], place[a]);
             }
         }
-        Neighbourhood::<S>::mirror_symmetric(&mut moment);
         Neighbourhood::<S>::mirror(&mut gradient);
-        Neighbourhood::<S>::mirror(&mut place);
-        for axis in self.dimension..3 {
-            moment[axis] = V::splat(1.0);
-        }
-        let inner = Correction::new::<V, S>(&store_all(&moment)).inner;
+        moments.complete::<S>(self.dimension);
+        let inner = moments.correction::<S>(0).inner;
         let gradient = along(&full(&load_all(&inner)), &gradient);
         for a in 0..3 {
-            sum = gradient[a].mul_add(place[a], sum);
+            sum = gradient[a].mul_add(moments.place[a], sum);
         }
-        let rest = sum.div(weights.min(V::splat(-f64::MIN_POSITIVE)));
+        let rest = sum.div(moments.weight());
         own.add(rest).store()
     }
 }

@@ -284,7 +284,7 @@ impl<S: PairScale> Vectorised for TotalGradient<'_, S> {
         }
         let deformation = deformation(&plain, &moment);
         let (shrink, determinant) = inverse(&deformation, LEAST_DETERMINANT);
-        let faded = faded(&moment, LATE_FADE);
+        let faded = faded(&moment, V::splat(LATE_FADE));
         let inner = times(&full(&faded.inverse), &shrink);
         let outer = times(&plain, &inner);
         let stretch = times(&rate, &inner);

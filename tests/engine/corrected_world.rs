@@ -87,6 +87,18 @@ impl World {
         m
     }
 
+    /// Square of the mean separation from the neighbours over the mean square.
+    pub fn one_sided(&self, i: usize) -> f64 {
+        let (mut place, mut square, mut weights) = (Vec3::zeros(), 0.0, 0.0);
+        for (j, r, g) in self.near(i) {
+            let weight = self.found.motion[j].volume * r.norm() * g.norm();
+            place += r * weight;
+            square += r.norm_squared() * weight;
+            weights += weight;
+        }
+        place.norm_squared() / (square * weights).max(f64::MIN_POSITIVE)
+    }
+
     /// `L₀`, and the sum of the sizes of its terms.
     pub fn plain_gradient(&self, i: usize, velocity: impl Fn(usize) -> Vec3) -> (Matrix, f64) {
         let (mut gradient, mut size) = (Matrix::zeros(), 0.0);

@@ -69,7 +69,7 @@ fn artificial_stress_keeps_particles_apart_in_tension() {
     };
     for (form, clumped) in [
         (SphForm::Conventional, 0.0..0.3),
-        (SphForm::Corrected, 0.65..0.8),
+        (SphForm::Corrected, 0.63..0.8),
     ] {
         let (without, with) = (swing(form, 0.0), swing(form, 0.3));
         println!(

@@ -1,6 +1,7 @@
 //! Motion by the plain sums of the first sweep: strain, spin, and the rest that no linear field
 //! explains.
 
+use super::moments::Moments;
 use numerics::lane_matrix::{Symmetric, along, faded, full, times};
 use numerics::lanes::Lanes;
 
@@ -15,30 +16,10 @@ const SPIN_PASSES: usize = 2;
 pub(super) struct PlainSums<V> {
     /// `L₀` (1/s).
     pub(super) gradient: [V; 9],
-    /// `M`.
-    pub(super) moment: Symmetric<V>,
-    /// `Σ w_ij (v_j − v_i)` with `w_ij = −V_j r |∇W_ij|`.
+    /// Those of the places of the neighbours.
+    pub(super) moments: Moments<V>,
+    /// `Σ w_ij (v_j − v_i)`.
     pub(super) velocity: [V; 3],
-    /// `Σ w_ij (x_i − x_j)`.
-    pub(super) place: [V; 3],
-    /// `Σ w_ij (x_i − x_j)²`.
-    pub(super) square: V,
-    /// `Σ w_ij`, which is `−tr M`.
-    pub(super) weight: V,
-}
-
-impl<V: Lanes> PlainSums<V> {
-    /// The weight where there are neighbours: a particle alone has none.
-    #[inline(always)]
-    fn some_weight(&self) -> V {
-        self.weight.min(V::splat(-f64::MIN_POSITIVE))
-    }
-
-    /// Mean square of the distances of neighbours (m²).
-    #[inline(always)]
-    pub(super) fn square_length(&self) -> V {
-        self.square.div(self.some_weight())
-    }
 }
 
 /// Parts of a motion.
@@ -74,7 +55,7 @@ pub(crate) fn spin<V: Lanes>(strain: &[V; 9], plain: &[V; 9], moment: &Symmetric
         zero.sub(xz),
         zero.sub(yz),
     ];
-    let inverse = full(&faded(&inertia, SPIN_FADE).inverse);
+    let inverse = full(&faded(&inertia, V::splat(SPIN_FADE)).inverse);
     let inertia = full(&inertia);
     let mut turn = along(&inverse, &axial);
     for _ in 0..SPIN_PASSES {
@@ -110,8 +91,8 @@ pub(super) fn motion<V: Lanes>(
         strain[a] = corrected[a].add(corrected[b]).mul(half);
         strain[b] = strain[a];
     }
-    let spin = spin(&strain, &plain.gradient, &plain.moment);
-    let turned = times(&spin, &full(&plain.moment));
+    let spin = spin(&strain, &plain.gradient, &plain.moments.second);
+    let turned = times(&spin, &full(&plain.moments.second));
     let mut stretch = plain.gradient;
     for c in 0..9 {
         stretch[c] = stretch[c].sub(turned[c]);
@@ -122,8 +103,8 @@ pub(super) fn motion<V: Lanes>(
         expected[c] = expected[c].add(spin[c]);
         gradient[c] = gradient[c].add(spin[c]);
     }
-    let linear = along(&expected, &plain.place);
-    let weight = plain.some_weight();
+    let linear = along(&expected, &plain.moments.place);
+    let weight = plain.moments.weight();
     let mut rest = plain.velocity;
     for a in 0..3 {
         rest[a] = rest[a].add(linear[a]).div(weight);
