@@ -26,6 +26,7 @@ mod version;
 mod watch;
 mod when;
 pub mod which;
+mod why;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

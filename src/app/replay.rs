@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::compare::{Report, tables_and_states};
 use super::results::ResultsError;
-use super::{restart, run};
+use super::{restart, run, why};
 use comm::Comm;
 use files::input;
 use files::output::checkpoint;
@@ -31,6 +31,7 @@ use model::readable::one_line;
       --rows-every 1
   mpirun -n 4 whipple replay runs/impact --to 0.1us \\
       --set measure.every=1ns --out runs/impact-measured
+  whipple replay runs/impact --why 4711 --gauge 0,0,-2mm
   whipple plot replays/impact --movie cloud.gif
 
 Exit codes: 0 it is the same; 1 it differs, or a run failed; 2 wrong input;
@@ -60,7 +61,15 @@ pub struct ReplayArgs {
     #[arg(long = "field", value_name = "NAME")]
     fields: Vec<String>,
 
-    /// Change a value of `output`, `measure` or `fragments`, as in measure.every=1ns; may be given many times
+    /// A gauge at X,Y,Z that reads each step, as in 1mm,0,-2mm; may be given many times
+    #[arg(long = "gauge", value_name = "PLACE")]
+    gauges: Vec<String>,
+
+    /// Tell the history of the particle of an id, as snapshots show it: what it bore, met and lost; may be given many times
+    #[arg(long, value_name = "ID")]
+    why: Vec<u64>,
+
+    /// Change a value of `output`, `measure`, `gauge` or `fragments`, as in measure.every=1ns; may be given many times
     #[arg(short, long, value_name = "KEY=VALUE")]
     set: Vec<String>,
 
@@ -109,7 +118,7 @@ impl RankArgs {
 }
 
 /// Keys that a replay may change: none of them moves a particle.
-const SECTIONS: [&str; 3] = ["output.", "measure.", "fragments."];
+const SECTIONS: [&str; 4] = ["output", "measure", "gauge", "fragments"];
 
 /// Runs the command; returns the exit code.
 pub fn run(args: &ReplayArgs) -> u8 {
@@ -134,10 +143,29 @@ pub fn run(args: &ReplayArgs) -> u8 {
             force: args.force,
         };
         match part.compute(launch) {
-            0 => part.verify(comm),
+            0 => match part.verify(comm) {
+                0 => tell_why(comm, &args.why, part.out),
+                code => code,
+            },
             code => code,
         }
     })
+}
+
+/// Tells the history of particles in a replay; returns the exit code. Collective.
+fn tell_why(comm: &Comm, ids: &[u64], out: &Path) -> u8 {
+    let told = from_root(comm, || {
+        ids.iter()
+            .try_fold(true, |all, id| Ok(why::tell(out, *id)? && all))
+    });
+    match told {
+        Ok(true) => 0,
+        Ok(false) => EXIT_INPUT,
+        Err(error) => {
+            warn(comm, &format!("error: {error}"));
+            EXIT_FAILED
+        }
+    }
 }
 
 /// `replays/`, the name of a run's folder, and an ending.
@@ -177,12 +205,20 @@ fn overrides(comm: &Comm, args: &ReplayArgs) -> Result<Vec<String>, String> {
         all.extend(more);
         set.push(format!("output.fields={all:?}"));
     }
-    let other = |key: &&String| !SECTIONS.iter().any(|section| key.starts_with(section));
+    let other = |key: &&String| {
+        let section = key.split(['.', '=', '+']).next().map(str::trim);
+        !SECTIONS.iter().any(|own| section == Some(own))
+    };
     if let Some(key) = args.set.iter().find(other) {
         return Err(format!(
-            "error: {key}: a replay changes keys of `output`, `measure` and `fragments` alone"
+            "error: {key}: a replay changes keys of `output`, `measure`, `gauge` and `fragments` alone"
         ));
     }
+    for place in &args.gauges {
+        let at: Vec<&str> = place.split(',').map(str::trim).collect();
+        set.push(format!("gauge+={{ at = {at:?} }}"));
+    }
+    set.extend(args.why.iter().map(|id| why::gauge(*id)));
     set.extend_from_slice(&args.set);
     Ok(set)
 }

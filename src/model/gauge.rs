@@ -7,8 +7,10 @@ pub struct Gauge {
     pub name: String,
     /// Its position, or the initial one (m).
     pub at: [f64; 3],
-    /// `true` if the particle nearest at the start carries it.
+    /// `true` if a particle carries it: that of an id, else the nearest at the start.
     pub moves: bool,
+    /// Id of the particle that carries it, with whose readings go those of what stands around it.
+    pub particle: Option<u64>,
     /// The body that it reads; all that deform if absent.
     pub body: Option<usize>,
     /// Names of what it reads, at least one.

@@ -44,7 +44,7 @@ impl MeasureOptions {
     #[must_use]
     pub fn marks_particles(&self) -> bool {
         let mut zones = self.measures.iter();
-        self.gauges.iter().any(|gauge| gauge.moves)
+        (self.gauges.iter()).any(|gauge| gauge.moves && gauge.particle.is_none())
             || zones.any(
                 |measure| matches!(&measure.kind, MeasureKind::Zone(zone) if zone.mark.is_some()),
             )

@@ -258,6 +258,8 @@ fn overrides_reach_every_place() {
             "domain.levels=2",
             "time_step.max=1 ns",
             "output.fields=[\"pressure\"]",
+            "gauge+={ at = [0, 0, 0] }",
+            "gauge+={ particle = 4711 }",
         ],
     );
     assert!((case.bodies[0].lattice.spacing - 2e-5).abs() < 1e-18);
@@ -293,6 +295,8 @@ fn overrides_reach_every_place() {
     assert_eq!(usual.levels, None);
     assert_eq!(case.time_step.max.to_bits(), 1e-9f64.to_bits());
     assert_eq!(case.output.fields, ["pressure"]);
+    let carried = case.measure.gauges.iter().map(|gauge| gauge.particle);
+    assert_eq!(carried.collect::<Vec<_>>(), [None, Some(4711)]);
 }
 
 #[test]

@@ -424,6 +424,7 @@ const IN_OVERRIDES: &[(&str, &str, usize)] = &[
         "`density` must be positive",
         19,
     ),
+    ("spacing+=1 mm", "only a list gets one more element", 1),
     (
         "body.ball.specific_energy=1 J",
         "expected a specific energy with a unit",

@@ -8,6 +8,7 @@
 
 use super::near::{LaneSum, Near, One};
 use super::reading::{Reading, along, stress};
+use super::surroundings;
 use model::{Case, Gauge};
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::kernel::Kernel;
@@ -53,7 +54,7 @@ pub struct Reader {
     pub due: bool,
     /// True if a particle of this rank is near.
     pub met: bool,
-    /// Coverage, position, then its readings and the normal stress, each times its weight.
+    /// Coverage, position, then its readings, the normal stress and the surroundings, each times its weight.
     pub sums: Vec<f64>,
 }
 
@@ -64,7 +65,8 @@ impl Reader {
             |(reading, _): &&(Reading, usize)| gauge.fields.iter().any(|n| n == reading.name());
         let readings: Vec<_> = readings.iter().filter(own).copied().collect();
         let numbers: usize = readings.iter().map(|(r, _)| r.endings().len()).sum();
-        let sums = FIRST + numbers + usize::from(gauge.along.is_some());
+        let around = gauge.particle.map_or(0, |_| surroundings::NUMBERS);
+        let sums = FIRST + numbers + usize::from(gauge.along.is_some()) + around;
         Self {
             gauge: gauge.clone(),
             readings,
@@ -101,6 +103,11 @@ impl Reader {
         for (reading, _) in &self.readings {
             let (sums, others) = rest.split_at_mut(reading.endings().len());
             reading.add_up::<V>(matter.case, particles, near, sums);
+            rest = others;
+        }
+        if let (Some(_), Some(carrier)) = (self.gauge.particle, near.iter().next()) {
+            let (others, numbers) = rest.split_at_mut(rest.len() - surroundings::NUMBERS);
+            numbers.copy_from_slice(&surroundings::around(matter, carrier.i));
             rest = others;
         }
         if let (Some(normal), [sum, ..]) = (&self.gauge.along, rest) {

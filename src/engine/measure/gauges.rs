@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::gauge_reader::{FIRST, Matter, Means, Reader, Scratch, reads};
 use super::gauge_shares::Shares;
 use super::reading::Reading;
+use super::surroundings;
 use comm::Comm;
 use model::{Cadence, Case, Gauge};
 use numerics::collector::Collector;
@@ -24,6 +25,8 @@ pub struct Gauges {
     readings: Vec<(Reading, usize)>,
     /// Column of the normal stress, if any reads it.
     along: Option<usize>,
+    /// First column of the surroundings, if any reads them.
+    around: Option<usize>,
     columns: usize,
     readers: Vec<Reader>,
     shares: Shares,
@@ -66,6 +69,9 @@ impl Gauges {
         let along = gauges.iter().any(|gauge| gauge.along.is_some());
         let along = along.then_some(columns);
         columns += usize::from(along.is_some());
+        let around = gauges.iter().any(|gauge| gauge.particle.is_some());
+        let around = around.then_some(columns);
+        columns += around.map_or(0, |_| surroundings::NUMBERS);
         Self {
             means: Means {
                 kernel: Kernel::new(case.extent()),
@@ -74,6 +80,7 @@ impl Gauges {
             readers: gauges.iter().map(|g| Reader::new(g, &readings)).collect(),
             readings,
             along,
+            around,
             columns,
             shares: Shares::default(),
             missing: Vec::new(),
@@ -89,7 +96,11 @@ impl Gauges {
             reading.endings().iter().map(name).collect::<Vec<_>>()
         });
         let along = self.along.map(|_| ("normal_stress".to_owned(), "Pa"));
-        readings.chain(along)
+        let around = surroundings::COLUMNS
+            .iter()
+            .filter(|_| self.around.is_some());
+        let around = around.map(|(name, unit)| ((*name).to_owned(), *unit));
+        readings.chain(along).chain(around)
     }
 
     /// True if there are any.
@@ -108,7 +119,7 @@ impl Gauges {
             + self.collector.memory()
     }
 
-    /// The particles that carry gauges, in their order: nearest at the start of the body that the
+    /// The particles that carry gauges that name none, in their order: nearest at the start of the body that the
     /// gauge names, of those as near that of the smallest id; the largest id where there is none.
     /// After a search of neighbours. Collective.
     #[must_use]
@@ -119,7 +130,7 @@ impl Gauges {
         lists: &Lists,
         comm: &Comm,
     ) -> Vec<u64> {
-        let carried: Vec<&Gauge> = self.carried().map(|reader| &reader.gauge).collect();
+        let carried: Vec<&Gauge> = self.chosen().map(|reader| &reader.gauge).collect();
         let nearest = |gauge: &&Gauge| nearest(gauge, case, particles, lists);
         let own: Vec<[u64; 2]> = carried.iter().map(nearest).collect();
         let mut distances: Vec<u64> = own.iter().map(|[distance, _]| *distance).collect();
@@ -135,15 +146,17 @@ impl Gauges {
         ids
     }
 
-    /// Gauges that particles carry.
-    fn carried(&self) -> impl Iterator<Item = &Reader> {
-        self.readers.iter().filter(|reader| reader.gauge.moves)
+    /// Gauges that particles carry which are chosen at the start.
+    fn chosen(&self) -> impl Iterator<Item = &Reader> {
+        let all = self.readers.iter().map(|reader| (reader, &reader.gauge));
+        let chosen = all.filter(|(_, gauge)| gauge.moves && gauge.particle.is_none());
+        chosen.map(|(reader, _)| reader)
     }
 
-    /// Number of gauges that particles carry.
+    /// Number of particles that are chosen at the start to carry gauges.
     #[must_use]
-    pub fn count_carried(&self) -> usize {
-        self.carried().count()
+    pub fn count_chosen(&self) -> usize {
+        self.chosen().count()
     }
 
     /// Readings of gauges whose turn it is; `carriers` are those of [`Self::choose`]. Right after
@@ -179,7 +192,7 @@ impl Gauges {
             },
         );
         self.shares.join(&mut self.readers, &matter, means, comm);
-        let columns = (self.columns, self.along);
+        let columns = (self.columns, self.along, self.around);
         let readers = self.readers.iter().enumerate();
         readers
             .filter(|(_, reader)| reader.due)
@@ -205,9 +218,12 @@ impl Gauges {
     fn find_carriers(&mut self, particles: &ParticleStore, carriers: &[u64]) {
         let ids = &particles.id[..particles.owned()];
         self.missing.clear();
+        let mut chosen = carriers.iter().copied();
         let carried = self.readers.iter_mut().enumerate();
-        let carried = carried.filter(|(_, reader)| reader.gauge.moves);
-        for ((gauge, reader), &id) in carried.zip(carriers) {
+        for (gauge, reader) in carried.filter(|(_, reader)| reader.gauge.moves) {
+            let Some(id) = reader.gauge.particle.or_else(|| chosen.next()) else {
+                continue;
+            };
             if reader.place.and_then(|i| ids.get(i)) != Some(&id) {
                 reader.place = None;
                 self.missing.push((id, gauge));
@@ -218,10 +234,18 @@ impl Gauges {
         }
         self.missing.sort_unstable();
         let marks = &particles.measure_marks;
+        // Particles that gauges name are not marked: a replay names them, and leaves the state as it is.
+        let missing = &self.missing;
+        let is_named = self
+            .readers
+            .iter()
+            .any(|reader| reader.gauge.particle.is_some());
         self.carriers.clear();
         let all = (ids.len(), GRAIN);
         self.collector.extend(&mut self.carriers, all, |i| {
-            let carries = marks[i] & CARRIES != 0;
+            let known = || missing.binary_search_by_key(&ids[i], |(id, _)| *id).is_ok();
+            let carries =
+                marks.get(i).is_some_and(|mark| mark & CARRIES != 0) || is_named && known();
             carries.then(|| u32::try_from(i).unwrap_or(u32::MAX))
         });
         for i in self.carriers.iter().map(|&i| i as usize) {
@@ -243,8 +267,12 @@ const CARRIES: u32 = 1;
 /// Gauges that a task reads at least.
 const AT_ONCE: usize = 16;
 
-/// Row of a gauge by its sums, among so many columns and with that of the normal stress.
-fn row(reader: &Reader, gauge: usize, (columns, along): (usize, Option<usize>)) -> GaugeRow {
+/// Row of a gauge by its sums, among so many columns and with those of the normal stress and the surroundings.
+fn row(
+    reader: &Reader,
+    gauge: usize,
+    (columns, along, around): (usize, Option<usize>, Option<usize>),
+) -> GaugeRow {
     let (first, rest) = reader.sums.split_at(FIRST);
     let coverage = first[0];
     let mut means = rest.iter().map(|sum| sum / coverage);
@@ -257,6 +285,11 @@ fn row(reader: &Reader, gauge: usize, (columns, along): (usize, Option<usize>)) 
     }
     if let (Some(column), Some(_)) = (along, reader.gauge.along) {
         values[column] = means.next();
+    }
+    if let (Some(column), Some(_)) = (around, reader.gauge.particle) {
+        for value in &mut values[column..column + surroundings::NUMBERS] {
+            *value = means.next();
+        }
     }
     let position = match (reader.gauge.moves, coverage > 0.0) {
         (false, _) => reader.gauge.at,

@@ -27,6 +27,7 @@ mod plate;
 mod reading;
 mod remains;
 mod revolved;
+mod surroundings;
 mod target;
 mod voxels;
 mod whole;

@@ -42,7 +42,7 @@ pub(super) fn require_own(
                 .any(|by_body| ![0, bodies].contains(&by_body.len()))
         }),
         ("it has other gauges or witness planes", &|| {
-            let carried = beginning.measures.gauges.count_carried();
+            let carried = beginning.measures.gauges.count_chosen();
             [state.gauge_carriers.len(), state.passed.len()] != [carried, own.passed.len()]
         }),
         ("it has other bodies of the total form", &|| {

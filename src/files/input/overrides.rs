@@ -14,8 +14,15 @@ use super::source::Diagnostic;
 use model::units;
 
 /// Sections that do not touch the state of a run, so that a restart may change them.
-pub(super) const RESTARTABLE: [&str; 6] =
-    ["run", "output", "fragments", "domain", "measure", LIMITS];
+pub(super) const RESTARTABLE: [&str; 7] = [
+    "run",
+    "output",
+    "fragments",
+    "domain",
+    "measure",
+    "gauge",
+    LIMITS,
+];
 
 /// Key of the numerical failure limits, and its older name.
 const LIMITS: &str = "numerical_limits";
@@ -39,32 +46,45 @@ type Value<'t> = Spanned<DeValue<'t>>;
 pub struct Override<'t> {
     path: Vec<Key<'t>>,
     value: Value<'t>,
+    /// True if the value goes to the end of a list.
+    adds: bool,
 }
 
 impl<'t> Override<'t> {
-    /// Reads `key=value`; `start` is the address of the text.
+    /// Reads `key=value`, or `key+=value`, which adds an element to a list; `start` is the address of the text.
     pub fn parse(text: &'t str, start: usize) -> Result<Self, Diagnostic> {
         let Some(equals) = text.find('=') else {
             let diagnostic = Diagnostic::new(start..start + text.len(), "an override needs a `=`");
             return Err(diagnostic.help("write it as `--set key=value`"));
         };
-        let mut path = parse_path(&text[..equals], start)?;
+        let key = text[..equals].trim_end();
+        let adds = key.ends_with('+');
+        let mut path = parse_path(key.strip_suffix('+').unwrap_or(key), start)?;
         if path[0].get_ref() == OLD_LIMITS {
             path[0] = Spanned::new(path[0].span(), Cow::Borrowed(LIMITS));
         }
         Ok(Self {
             path,
             value: parse_value(&text[equals + 1..], start + equals + 1)?,
+            adds,
         })
     }
 
     /// Lays the value over the document.
     pub fn apply(self, document: &mut DeTable<'t>) -> Result<(), Diagnostic> {
-        let Self { mut path, value } = self;
+        let Self {
+            mut path,
+            value,
+            adds,
+        } = self;
         let last = path.pop().expect("a parsed path has a key");
         let mut path = path.into_iter();
         let Some(first) = path.next() else {
-            return replace(document, last, value);
+            return if adds {
+                add(document, last, value)
+            } else {
+                replace(document, last, value)
+            };
         };
         let mut place = entry(document, first);
         for key in path {
@@ -72,8 +92,9 @@ impl<'t> Override<'t> {
         }
         let span = last.span();
         match place.get_mut() {
+            DeValue::Table(table) if adds => add(table, last, value),
             DeValue::Table(table) => replace(table, last, value),
-            DeValue::Array(array) => {
+            DeValue::Array(array) if !adds => {
                 let index = element(array, &last)?;
                 let place = &mut array.as_mut()[index];
                 *place = in_place_of(place, value)?;
@@ -151,6 +172,19 @@ fn replace<'t>(
     }
     table.insert(key, value);
     Ok(())
+}
+
+/// Adds an element to a list of a table, which is made if it is not there.
+fn add<'t>(table: &mut DeTable<'t>, key: Key<'t>, value: Value<'t>) -> Result<(), Diagnostic> {
+    let span = key.span();
+    let none = || Spanned::new(span.clone(), DeValue::Array(DeArray::new()));
+    match table.entry(key).or_insert_with(none).get_mut() {
+        DeValue::Array(array) => {
+            array.push(value);
+            Ok(())
+        }
+        _ => Err(Diagnostic::new(span, "only a list gets one more element")),
+    }
 }
 
 /// What stands in place of an old value: for a vector a quantity of its dimension is its length, and its

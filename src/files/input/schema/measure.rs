@@ -14,9 +14,11 @@ tables! {
         /// Name in tables, as of a body.
         name: Option<Spanned<String>> => "`gauge-1` and so on";
         /// Where it is, or begins.
-        at: Spanned<Vec<Placed<Length>>>;
+        at: Option<Spanned<Vec<Placed<Length>>>> => "that of `particle`";
         /// True if the particle nearest at the start carries it, in place of being fixed in space.
-        moves: Option<bool> = false;
+        moves: Option<Spanned<bool>> => "`false`";
+        /// In place of a position, the id of the particle that carries it; it also reads the neighbours of that particle.
+        particle: Option<Spanned<i64>>, AtLeast(0) => "none";
         /// Name of the body whose matter it reads.
         body: Option<Spanned<String>> => "all that deform";
         /// Names of what it reads.

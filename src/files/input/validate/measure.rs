@@ -7,6 +7,7 @@ use super::measures::measures;
 use super::named::{body, fields, unique};
 use super::shapes::vector;
 use super::surfaces::unit_vector;
+use crate::input::quantity::{Length, Placed};
 use crate::input::schema::{GaugeParams, MeasureParams, WitnessParams};
 use crate::input::source::Diagnostic;
 use model::{Cadence, Case, Gauge, MeasureOptions, SphForm, SymmetryPlane, Witness};
@@ -61,19 +62,41 @@ fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<
         return Err(Diagnostic::new(table.span(), title)
             .help("the other forms have their stress at the particles, see `sph.form`"));
     }
-    let at = vector("at", Some(&params.at), case.dimension)?;
-    let behind = |plane: &&SymmetryPlane| at[plane.axis.index()] < plane.position;
-    if let Some(plane) = case.symmetry.iter().find(behind) {
-        let title = format!("behind the symmetry plane of {}", plane.axis.name());
-        return Err(Diagnostic::new(params.at.span(), title)
-            .help("put the gauge at the mirror image of the place"));
+    let particle = params.particle()?;
+    let at = match (&params.at, &params.particle) {
+        (Some(at), None) => place(case, at)?,
+        (None, Some(_)) => [0.0; 3],
+        (None, None) => {
+            return Err(Diagnostic::new(
+                table.span(),
+                "a gauge needs `at` or `particle`",
+            ));
+        }
+        (Some(_), Some(id)) => {
+            let title = "a gauge is at a place or carried by a particle of this id, not both";
+            return Err(Diagnostic::new(id.span(), title));
+        }
+    };
+    let of_place = [
+        ("moves", params.moves.as_ref().map(Spanned::span)),
+        ("body", params.body.as_ref().map(Spanned::span)),
+    ];
+    if let (Some(_), Some((key, span))) = (
+        particle,
+        of_place
+            .into_iter()
+            .find_map(|(key, span)| Some((key, span?))),
+    ) {
+        let title = format!("`{key}` goes with `at`: this gauge is carried by its particle");
+        return Err(Diagnostic::new(span, title));
     }
     let along = params.along.as_ref();
     let along = along.map(|normal| unit_vector("along", normal, case.dimension));
     Ok(Gauge {
         name: given_name(params.name.as_ref(), "gauge", number_of),
         at,
-        moves: params.moves(),
+        moves: particle.is_some() || params.moves.as_ref().is_some_and(|moves| *moves.get_ref()),
+        particle,
         body: params
             .body
             .as_ref()
@@ -83,6 +106,20 @@ fn gauge(case: &Case, table: &Spanned<GaugeParams>, number_of: usize) -> Result<
         along: along.transpose()?,
         every: every(params)?,
     })
+}
+
+/// A position (m) that is not behind a symmetry plane.
+fn place(case: &Case, at: &Spanned<Vec<Placed<Length>>>) -> Result<[f64; 3], Diagnostic> {
+    let position = vector("at", Some(at), case.dimension)?;
+    let behind = |plane: &&SymmetryPlane| position[plane.axis.index()] < plane.position;
+    match case.symmetry.iter().find(behind) {
+        Some(plane) => {
+            let title = format!("behind the symmetry plane of {}", plane.axis.name());
+            Err(Diagnostic::new(at.span(), title)
+                .help("put the gauge at the mirror image of the place"))
+        }
+        None => Ok(position),
+    }
 }
 
 fn every(params: &GaugeParams) -> Result<Cadence, Diagnostic> {
