@@ -1,5 +1,6 @@
 //! `whipple fragments`: the fragments of a run's snapshots, by the code of the run itself.
 
+mod catalogue;
 mod debris;
 mod loaded;
 
@@ -34,6 +35,7 @@ use plot::{PlotError, choose, snapshots};
   whipple fragments runs/impact
   whipple fragments runs/impact --at 5us --csv fragments.csv
   whipple fragments runs/impact --include all --min-particles 20
+  whipple fragments runs/impact --catalogue runs/impact/catalogue
   whipple plot runs/impact --fragments")]
 pub struct FragmentsArgs {
     /// Run folder, or snapshot (.vtkhdf)
@@ -77,6 +79,11 @@ pub struct FragmentsArgs {
     /// Write the same table as HDF5
     #[arg(long, value_name = "FILE")]
     pub hdf5: Option<PathBuf>,
+
+    /// Write a catalogue of debris into a folder: catalogue.csv with velocity, spin, lengths, area to mass and more of each
+    /// fragment, their closed surfaces as catalogue.vtk, ledger.csv, and catalogue.png beside NASA's breakup model
+    #[arg(long, value_name = "DIR")]
+    pub catalogue: Option<PathBuf>,
 }
 
 /// Why the fragments of a snapshot are unknown.
@@ -165,6 +172,9 @@ pub fn evaluate(args: &FragmentsArgs) -> Result<String, FragmentsError> {
     let mut text = report(&loaded, &census, &options);
     list_pieces(&loaded, (&census, &is_largest), &mut text);
     list_debris(&loaded, &debris, &mut text);
+    if let Some(folder) = &args.catalogue {
+        text += &catalogue::write(folder, &path, (&loaded, &census), loaded.case.as_ref())?;
+    }
     Ok(text)
 }
 

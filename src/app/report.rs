@@ -165,6 +165,7 @@ fn fragments(folder: &RunFolder) -> Result<String, String> {
         format: OutputFormat::default(),
         csv: None,
         hdf5: None,
+        catalogue: None,
     };
     evaluate_fragments(&args).map_err(|error| error.to_string())
 }

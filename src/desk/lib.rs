@@ -2,6 +2,7 @@
 //! limits.
 
 pub mod ballistic;
+pub mod catalogue;
 pub mod export;
 pub mod report;
 pub mod sweep;

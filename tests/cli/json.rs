@@ -34,6 +34,58 @@ fn fragments_and_debris(run: &str) {
     }
 }
 
+/// A catalogue of what a run has left: its ledger closes, and what hangs together encloses its volume.
+#[test]
+fn fragments_have_a_catalogue() {
+    let place = tempfile::tempdir().unwrap();
+    let [run, out] = ["run", "catalogue"].map(|name| place.path().join(name));
+    end(&mut coarse_run(1, &run)).with_code(0);
+    let mut fragments = command(WHIPPLE);
+    fragments
+        .arg("fragments")
+        .arg(&run)
+        .arg("--catalogue")
+        .arg(&out);
+    let ended = end(&mut fragments).with_code(0);
+    assert!(
+        ended.stdout.contains("NASA's breakup model: "),
+        "{ended:#?}"
+    );
+    let rows = |name: &str| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(out.join(name)).unwrap();
+        let lines = text.lines().skip(2);
+        let cells = |line: &str| {
+            line.split(',')
+                .map(|cell| cell.parse().unwrap_or(0.0))
+                .collect()
+        };
+        lines.map(cells).collect()
+    };
+    // Parts and all: mass, momentum along the only axis that is no mirror's, energy.
+    let ledger = rows("ledger.csv");
+    for column in [1, 4, 5] {
+        let parts: f64 = ledger[..3].iter().map(|row| row[column]).sum();
+        let all = ledger[3][column];
+        assert!(
+            (parts / all - 1.0).abs() < 1e-12,
+            "{column}: {parts} of {all}"
+        );
+    }
+    let catalogue = rows("catalogue.csv");
+    let mass: f64 = catalogue.iter().map(|row| row[2] * row[4]).sum();
+    assert!((mass / ledger[0][1] - 1.0).abs() < 1e-12);
+    // A plate, not as thick as wide: its volume, and its shadow between that of its edge and of its face.
+    let plate = &catalogue[0];
+    assert!(
+        (plate[4] / plate[14] / 2700.0 - 1.0).abs() < 0.1,
+        "{plate:?}"
+    );
+    assert!(plate[16] < plate[18] * plate[19] && plate[16] > plate[19] * plate[20]);
+    let surfaces = fs::read(out.join("catalogue.vtk")).unwrap();
+    assert!(surfaces.starts_with(b"# vtk DataFile Version 3.0\n"));
+    assert!(out.join("catalogue.png").exists());
+}
+
 #[test]
 fn answers_are_documents_in_si_units() {
     let place = tempfile::tempdir().unwrap();

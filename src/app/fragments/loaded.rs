@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::results::only_part;
 use super::{FragmentsError, read_case};
+use desk::catalogue::Grain;
 use engine::fragments::{FirstSizes, Matter, belongs};
 use files::output::h5::Content;
 use files::output::h5::read::SnapshotFile;
@@ -20,6 +21,8 @@ pub struct Loaded {
     pub symmetry: Vec<SymmetryPlane>,
     /// The case's own rule.
     pub options: Option<FragmentOptions>,
+    /// The case, if it can be read.
+    pub case: Option<Case>,
     /// The quantities that are unknown, and why.
     pub missing: Option<String>,
     ids: Vec<u64>,
@@ -145,7 +148,7 @@ impl Reader<'_> {
     }
 }
 
-fn wrong(path: &Path, reason: impl Into<String>) -> FragmentsError {
+pub(super) fn wrong(path: &Path, reason: impl Into<String>) -> FragmentsError {
     FragmentsError::Snapshot {
         path: path.to_owned(),
         reason: reason.into(),
@@ -199,7 +202,8 @@ impl Loaded {
         let mut loaded = Self {
             title: reader.converted(reader.file.attribute("/whipple", "title"))?,
             time: reader.converted(reader.file.time())?,
-            options: case.ok().and_then(|case| case.fragments),
+            options: case.as_ref().ok().and_then(|case| case.fragments),
+            case: case.ok(),
             missing,
             size: sizes.collect(),
             deformation: reader.deformation()?,
@@ -224,6 +228,16 @@ impl Loaded {
         let sizes = self.size.iter_mut().zip(frozen);
         for (size, _) in sizes.filter(|(_, frozen)| **frozen != 0.0) {
             *size = 0.0;
+        }
+    }
+
+    /// A particle as one of a piece.
+    pub fn grain(&self, i: usize, piece: u32) -> Grain {
+        Grain {
+            centre: self.position[i],
+            size: self.size[i],
+            deformation: self.deformation.get(i).copied(),
+            piece,
         }
     }
 

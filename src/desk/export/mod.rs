@@ -17,7 +17,7 @@ mod paraview;
 mod ply;
 mod start;
 mod stl;
-mod surface;
+pub(crate) mod surface;
 mod text;
 mod values;
 mod vtu;

@@ -41,6 +41,8 @@ pub struct Shape {
     pub ellipsoid: Ellipsoid,
     /// What one such particle in the middle of a place is of all around it that fills it; zero if it may lie apart.
     around: f64,
+    /// Its own weight: one, or zero of a shape that fills nothing by itself.
+    own: f64,
 }
 
 impl Shape {
@@ -50,6 +52,7 @@ impl Shape {
         Self {
             ellipsoid: Ellipsoid::ball(size),
             around: 0.0,
+            own: 1.0,
         }
     }
 
@@ -59,6 +62,7 @@ impl Shape {
         Self {
             ellipsoid: Ellipsoid::ball(size),
             around: around(dimension),
+            own: 1.0,
         }
     }
 
@@ -70,7 +74,19 @@ impl Shape {
         Some(Self {
             ellipsoid,
             around: around(dimension),
+            own: 1.0,
         })
+    }
+
+    /// One that fills a place where half of what is around is matter, in a model of some dimensions: flat faces stay where they
+    /// are, whatever the layers of a lattice, and edges are rounded by a part of a size.
+    #[must_use]
+    pub fn averaged(&self, dimension: usize) -> Self {
+        Self {
+            around: around(dimension) * (AROUND / 0.5),
+            own: 0.0,
+            ..*self
+        }
     }
 
     /// The farthest that a particle reaches whose first size, or present size if it has no gradient, are at most these (m).
@@ -124,7 +140,7 @@ impl Fill {
     pub fn add(&mut self, shape: &Shape, distance: f64) -> f64 {
         let rest = ((2.0 - distance) / 1.75).max(0.0);
         let weight = (rest * rest) * (rest * rest);
-        self.sum += weight;
+        self.sum += shape.own * weight;
         self.around += shape.around * (1.0 - 0.25 * distance).max(0.0);
         weight
     }

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::ExportError;
 use super::frame::{Frame, Wish};
 use blocks::Blocks;
-use level::Ball;
+pub use level::Ball;
 use plot::{Bodies, Drawn, Selection};
 
 /// Corners (m) of a triangle, which turn against the clock as seen from outside.
@@ -40,11 +40,19 @@ pub fn surfaces(frame: &Frame, wish: &Wish) -> Result<Vec<Vec<Triangle>>, Export
     }
     let pitch = wish.cell.unwrap_or(0.5 * frame.snapshot.finest());
     let balls = balls(frame, wish.mirror)?;
-    let blocks = Blocks::new(&balls, pitch).map_err(|reason| frame.wrong(reason))?;
     let bodies = frame.snapshot.bodies.len();
+    of_balls(&balls, bodies, pitch).map_err(|reason| frame.wrong(reason))
+}
+
+/// The surface of each of so many bodies, in cells of an edge (m).
+///
+/// # Errors
+/// A message, if the cells are too small for the extent of the balls.
+pub fn of_balls(balls: &[Ball], bodies: usize, pitch: f64) -> Result<Vec<Vec<Triangle>>, String> {
+    let blocks = Blocks::new(balls, pitch)?;
     let of_blocks: Vec<Vec<(u32, Triangle)>> = (0..blocks.count())
         .into_par_iter()
-        .map(|block| blocks.triangles(&balls, block))
+        .map(|block| blocks.triangles(balls, block))
         .collect();
     let mut surfaces = vec![Vec::new(); bodies];
     for (body, triangle) in of_blocks.into_iter().flatten() {
