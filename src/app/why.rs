@@ -44,14 +44,8 @@ pub(super) fn gauge(id: u64) -> String {
 pub(super) fn tell(out: &Path, id: u64) -> Result<bool, OutputError> {
     let folder = RunFolder::at(out);
     let wanted = name(id);
-    let sheet = match gauge_records::sheet(&folder, Some(std::slice::from_ref(&wanted)))? {
-        Some(sheet) => sheet,
-        None => {
-            let path = folder.gauges();
-            let text = String::from_utf8_lossy(&read_small(&path)?).into_owned();
-            Sheet::parse(&text).map_err(|reason| OutputError::damaged(&path, reason))?
-        }
-    };
+    let of_many = gauge_records::sheet(&folder, Some(std::slice::from_ref(&wanted)))?;
+    let sheet = of_many.map_or_else(|| read(&folder.gauges()), Ok)?;
     let history = History::of(&sheet, &wanted);
     if history.times.is_empty() {
         warn(&format!(
@@ -63,6 +57,11 @@ pub(super) fn tell(out: &Path, id: u64) -> Result<bool, OutputError> {
     history.tell(id);
     draw(out, &wanted);
     Ok(true)
+}
+
+fn read(path: &Path) -> Result<Sheet, OutputError> {
+    let text = String::from_utf8_lossy(&read_small(path)?).into_owned();
+    Sheet::parse(&text).map_err(|reason| OutputError::damaged(path, reason))
 }
 
 /// Rows of one gauge that a particle carried.
@@ -99,7 +98,7 @@ impl<'a> History<'a> {
     fn values(&self, name: &str) -> Vec<f64> {
         let column = self.sheet.names.iter().position(|own| own == name);
         let value = |cells: &&[String]| cells.get(column?)?.parse().ok();
-        let values = self.rows.iter().map(|cells| value(cells));
+        let values = self.rows.iter().map(value);
         values.map(|value| value.unwrap_or(f64::NAN)).collect()
     }
 
@@ -156,20 +155,24 @@ impl<'a> History<'a> {
             let tension = self.shown("pressure", -pressure);
             (row, format!("largest tension, {tension}"))
         }));
-        let extremes: [(&str, &str, fn(f64) -> f64); 4] = [
-            ("pressure", "largest pressure", |p| p),
-            ("von_mises_stress", "largest equivalent stress", |q| q),
-            ("temperature", "highest temperature", |t| t),
-            ("closest_foreign", "closest particle of another body", |r| {
-                -r
-            }),
+        let most = [
+            ("pressure", "largest pressure"),
+            ("von_mises_stress", "largest equivalent stress"),
+            ("temperature", "highest temperature"),
         ];
-        for (column, what, size) in extremes {
-            let Some((row, value)) = self.most(column, size).filter(|(_, value)| *value != 0.0)
-            else {
-                continue;
-            };
-            events.push((row, format!("{what}, {}", self.shown(column, value))));
+        let most = most.map(|(column, what)| (column, what, self.most(column, |value| value)));
+        let closest = self.most("closest_foreign", |distance| -distance);
+        let closest = (
+            "closest_foreign",
+            "closest particle of another body",
+            closest,
+        );
+        for (column, what, found) in most.into_iter().chain([closest]) {
+            let found = found.filter(|(_, value)| *value != 0.0);
+            events.extend(found.map(|(row, value)| {
+                let value = self.shown(column, value);
+                (row, format!("{what}, {value}"))
+            }));
         }
         events.sort_by_key(|(row, _)| *row);
         for (row, text) in events {

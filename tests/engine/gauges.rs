@@ -13,6 +13,7 @@ fn gauge(at: [f64; 3], fields: &[&str]) -> Gauge {
         name: "gauge".into(),
         at,
         moves: false,
+        particle: None,
         body: None,
         fields: fields.iter().map(|&field| field.into()).collect(),
         along: None,
@@ -28,6 +29,45 @@ fn step(simulation: &mut Simulation, steps: usize) {
     for _ in 0..steps {
         simulation.advance(&Comm::solo()).unwrap();
     }
+}
+
+/// A gauge on a particle that it names reads that particle and what stands around it.
+#[test]
+fn a_gauge_names_its_particle() {
+    let mut case = case(3, vec![ball("ball", 0.0, 6.0, 300.0)], 1.0);
+    let named = Gauge {
+        moves: true,
+        particle: Some(u64::MAX),
+        ..gauge([0.0; 3], &["velocity"])
+    };
+    case.measure.gauges = vec![named];
+    let id = {
+        let simulation = start(case.clone());
+        let particles = &simulation.particles;
+        let nearest = (0..particles.owned()).min_by(|&i, &j| {
+            let square = |i: usize| particles.position[i].iter().map(|x| x * x).sum::<f64>();
+            square(i).total_cmp(&square(j))
+        });
+        particles.id[nearest.unwrap()]
+    };
+    let mut nobody = start(case.clone());
+    step(&mut nobody, 1);
+    assert_eq!(read(&mut nobody)[0].coverage, 0.0);
+    case.measure.gauges[0].particle = Some(id);
+    let mut simulation = start(case);
+    step(&mut simulation, 1);
+    let names: Vec<String> = (simulation.gauges().columns())
+        .map(|(name, _)| name)
+        .collect();
+    let row = &read(&mut simulation)[0];
+    let value = |name: &str| row.values[names.iter().position(|own| own == name).unwrap()].unwrap();
+    assert_eq!(row.coverage, 1.0);
+    assert!(Vec3::from(row.position).norm() < SPACING);
+    assert!((value("closest_neighbour") / SPACING - 1.0).abs() < 1e-6);
+    // Sites of a cubic lattice within twice 1.3 spacings, or 1.2.
+    assert!((56.0..=92.0).contains(&value("neighbours")), "{row:?}");
+    assert_eq!(value("foreign_neighbours"), 0.0);
+    assert!(value("closest_foreign").is_nan());
 }
 
 /// A mean of what is the same everywhere is that, to rounding; coverage tells inside, face and void.
