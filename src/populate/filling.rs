@@ -41,7 +41,7 @@ impl Filling {
 
     /// All sites that the cuts leave, of a body whose particles have the volume `each` on average
     /// (m³; m² or m in two or one dimensions).
-    pub fn sites(self, cuts: Vec<Cut>, each: f64) -> Box<dyn Iterator<Item = Site> + Send> {
+    pub fn sites(self, cuts: Vec<Cut>, each: f64) -> Box<dyn Iterator<Item = Site>> {
         match self {
             Self::Given(given) => Box::new(given.sites(&cuts, each)),
             Self::Shells(shells) => Box::new(shells.sites(cuts)),

@@ -33,7 +33,18 @@ pub use touch::{touching_distance, touching_value};
 
 use filling::Filling;
 use model::{Axis, Body, Case, LatticeKind, RigidSurface, SymmetryPlane};
+use rayon::prelude::*;
 use row::cuts;
+
+/// The values of a function of each of some things, in their order: in parallel on a thread of a pool, and one after the other elsewhere. A
+/// case is read before the threads of a run are there, and whoever computes in parallel first would start others.
+pub(crate) fn in_pool<T: Sync, R: Send>(all: &[T], of: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    if rayon::current_thread_index().is_some() {
+        all.par_iter().map(&of).collect()
+    } else {
+        all.iter().map(of).collect()
+    }
+}
 
 #[cfg(test)]
 mod tests;

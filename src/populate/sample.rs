@@ -41,15 +41,6 @@ pub fn sample(
         }
     }
     let every = usize::try_from(every).unwrap_or(usize::MAX);
-    let sites = apart(|| sites(&coarse, dimension, symmetry, None));
+    let sites = sites(&coarse, dimension, symmetry, None);
     (sites.step_by(every), is_all)
-}
-
-/// Does work on a thread of its own: a case is read before the threads of a run are there, and whoever computes in parallel
-/// first would start others.
-fn apart<T: Send>(work: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
 }

@@ -817,6 +817,7 @@ checkpoint_every = "0.3 us"
 
 [material.aluminium]
 library = "aluminium-2024"
+failure.spall.pressure = "-1.2 GPa"
 
 [[body]]
 name = "bar"

@@ -5,8 +5,7 @@
 //! there are, and sites out of reach add exactly nothing. So a force has the same bits whichever
 //! other sites there are farther away, and whichever meet them in the other lanes.
 
-use rayon::prelude::*;
-
+use crate::in_pool;
 use numerics::dispatch::{Vectorised, instructions};
 use numerics::lanes::{F64x8, LANES, Lanes};
 
@@ -63,14 +62,14 @@ impl Sites {
             // Neighbours in reach are less than twice as large, and more than half as large.
             let around = level.saturating_sub(1)..(level + 2).min(grids.len());
             // Each site by itself, so the same bits in any order.
-            let of_groups = groups.par_chunks(TOGETHER).map(|groups| {
+            let together: Vec<&[_]> = groups.chunks(TOGETHER).collect();
+            let of_groups = in_pool(&together, |groups| {
                 instructions().run(Meet {
                     own: grid,
                     grids: &grids[around.clone()],
                     groups,
                 })
             });
-            let of_groups: Vec<Vec<[F64x8; 3]>> = of_groups.collect();
             for (group, force) in groups.iter().zip(of_groups.iter().flatten()) {
                 for (k, &n) in group.iter().enumerate() {
                     let at = wanted[grid.order[n as usize] as usize];

@@ -9,9 +9,8 @@
 
 use std::sync::OnceLock;
 
-use rayon::prelude::*;
-
 use super::forces::{REACH, Sites};
+use crate::in_pool;
 
 /// The share of its motion that a site keeps, and its motion by the unit of force.
 const KEPT: f64 = 0.7;
@@ -92,9 +91,11 @@ pub(super) fn step(
     let forces = sites.forces(moving);
     let before: &Sites = sites;
     // Each site by itself, so the same bits in any order.
-    let states = (moving, &*velocity, &forces).into_par_iter();
-    let moved = states.map(|(&i, v, others)| {
-        let i = i as usize;
+    let states: Vec<(u32, [f64; 3], [f64; 3])> = (moving.iter().zip(&*velocity).zip(&forces))
+        .map(|((&i, &v), &others)| (i, v, others))
+        .collect();
+    let moved = in_pool(&states, |(i, v, others)| {
+        let i = *i as usize;
         let (mut position, size) = (before.positions[i], before.sizes[i]);
         let other = outside(&position, size);
         let mut v: [f64; 3] =
@@ -109,7 +110,6 @@ pub(super) fn step(
         hold(&mut position, &mut v, size);
         (position, v)
     });
-    let moved: Vec<([f64; 3], [f64; 3])> = moved.collect();
     for ((&i, velocity), (position, v)) in moving.iter().zip(velocity).zip(moved) {
         sites.positions[i as usize] = position;
         *velocity = v;
