@@ -1,7 +1,8 @@
 //! The chart of an equation, with the shots of a sweep.
 
 use super::laws::Law;
-use desk::sweep::Shot;
+use super::table::{TAIL, onset_of};
+use desk::sweep::{Onset, Shot};
 use model::readable::tidy;
 use plot::{Chart, Curve, Mark, Quantity, Rgb, colour_of};
 
@@ -12,6 +13,38 @@ const SHOTS: [(bool, &str, Rgb); 2] = [
     (true, "failed", [205, 60, 50]),
     (false, "held", [70, 160, 90]),
 ];
+
+/// Where half of the runs fail, and 5 and 95 % of them, over the speeds of rows.
+fn onset_curves(law: &Law, shots: &[Shot], rows: &[(f64, Vec<f64>)]) -> Vec<Curve> {
+    let (Onset::Curve { middle, scale, .. }, Some(limit)) = (onset_of(law, shots), law.limit)
+    else {
+        return Vec::new();
+    };
+    let curve = |(share, name): (f64, &str)| {
+        let ratio = libm::exp(middle + share * scale * TAIL);
+        let points = rows
+            .iter()
+            .map(|(speed, values)| [*speed, ratio * values[limit]]);
+        Curve {
+            name: name.to_owned(),
+            colour: if share == 0.0 {
+                colour_of(1)
+            } else {
+                [170, 170, 170]
+            },
+            mark: Mark::Line,
+            points: points.collect(),
+            ..Curve::default()
+        }
+    };
+    [
+        (-1.0, "5 % of the runs fail"),
+        (1.0, "95 %"),
+        (0.0, "half of the runs fail"),
+    ]
+    .map(curve)
+    .into()
+}
 
 /// The curves of all values over the speeds from the least to the greatest, shots among them.
 pub(super) fn chart(law: &Law, speeds: &[f64], shots: &[Shot], axes: [Quantity; 2]) -> Chart {
@@ -40,6 +73,7 @@ pub(super) fn chart(law: &Law, speeds: &[f64], shots: &[Shot], axes: [Quantity; 
             ..Curve::default()
         })
         .collect();
+    curves.extend(onset_curves(law, shots, &rows));
     for (failed, name, colour) in SHOTS {
         let those = shots.iter().filter(|shot| shot.failed == failed);
         let points: Vec<[f64; 2]> = those.map(|shot| [shot.speed, shot.diameter]).collect();

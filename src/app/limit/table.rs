@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::laws::Law;
 use crate::output_format;
-use desk::sweep::Shot;
+use desk::sweep::{Onset, Shot, onset};
 use files::output::Sheet;
 
 /// A millimetre (m) and a kilometre in a second (m/s).
@@ -69,6 +69,9 @@ pub(super) fn sheet(law: &Law, speeds: &[f64]) -> Sheet {
     }
 }
 
+/// Of a logistic curve the distance of 95 % from its middle, in scales: ln 19.
+pub(super) const TAIL: f64 = 2.944_438_979_166_44;
+
 /// The whole report, in SI units.
 pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
     let shots = beside.iter().map(|shot| {
@@ -87,6 +90,7 @@ pub(super) fn document(law: &Law, speeds: &[f64], beside: &[Shot]) -> Value {
     document["source"] = law.source.into();
     document["holds_for"] = law.holds.into();
     document["shots"] = shots.collect();
+    document["onset"] = onset_document(&onset_of(law, beside));
     document
 }
 
@@ -121,7 +125,65 @@ pub(super) fn shots(law: &Law, shots: &[Shot]) -> String {
         "run and equation agree on {agreeing} of {} shots",
         shots.len()
     );
+    text += &onset_in_words(&onset_of(law, shots));
     text
+}
+
+/// What shots say of the diameter from which on runs fail, as the logarithm of its ratio to that of the equation.
+pub(super) fn onset_of(law: &Law, shots: &[Shot]) -> Onset {
+    let Some(limit) = law.limit else {
+        return Onset::Unknown;
+    };
+    let ratio = |shot: &Shot| {
+        let critical = (law.at)(shot.speed).values[limit];
+        (libm::log(shot.diameter / critical), shot.failed)
+    };
+    let ratios: Vec<(f64, bool)> = shots.iter().map(ratio).collect();
+    onset(&ratios)
+}
+
+fn onset_in_words(onset: &Onset) -> String {
+    let part = |x: f64| format!("{:.3}", libm::exp(x));
+    match *onset {
+        Onset::Unknown => String::new(),
+        Onset::Between(held, failed) => format!(
+            "runs hold up to {} and fail from {} times the diameter of the equation on\n",
+            part(held),
+            part(failed)
+        ),
+        Onset::Curve {
+            middle,
+            scale,
+            error,
+        } => format!(
+            "half of the runs fail at {} times the diameter of the equation (standard error {:.1} %), 5 % at {}, 95 % at {} \
+             (logistic curve)\n",
+            part(middle),
+            100.0 * error,
+            part(middle - scale * TAIL),
+            part(middle + scale * TAIL)
+        ),
+    }
+}
+
+/// As numbers: ratios of diameters.
+fn onset_document(onset: &Onset) -> Value {
+    match *onset {
+        Onset::Unknown => Value::Null,
+        Onset::Between(held, failed) => json!({
+            "held_up_to": libm::exp(held),
+            "failed_from": libm::exp(failed),
+        }),
+        Onset::Curve {
+            middle,
+            scale,
+            error,
+        } => json!({
+            "half_fail_at": libm::exp(middle),
+            "standard_error": error,
+            "scale": scale,
+        }),
+    }
 }
 
 #[cfg(test)]
@@ -185,6 +247,24 @@ mod tests {
             &[shot(0.8e-3, false), shot(1.2e-3, true), shot(1.3e-3, false)],
         );
         assert!(text.contains("1.200  failed  failed"), "{text}");
-        assert!(text.ends_with("agree on 2 of 3 shots\n"), "{text}");
+        assert!(text.contains("agree on 2 of 3 shots\n"), "{text}");
+        assert!(text.contains("half of the runs fail at "), "{text}");
+        let document = document(
+            &law(),
+            &[1000.0],
+            &[shot(0.8e-3, false), shot(1.2e-3, true)],
+        );
+        assert_eq!(
+            document["onset"]["failed_from"]
+                .as_f64()
+                .map(|x| (1e9 * x).round()),
+            Some(1.2e9)
+        );
+        let text = shots(&law(), &[shot(0.8e-3, false), shot(1.2e-3, true)]);
+        assert!(
+            text.contains("hold up to 0.800 and fail from 1.200 times"),
+            "{text}"
+        );
+        assert!(shots(&law(), &[shot(0.8e-3, false)]).ends_with("of 1 shots\n"));
     }
 }
