@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::compare::{cases, compare};
 use super::replay::{Part, RankArgs};
 use super::results::ResultsError;
-use files::output::{OutputError, RunFolder, Sheet, checkpoint, from_root, read_small};
+use files::output::{OutputError, RunFolder, checkpoint, from_root, read_sheet, read_small};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT};
 use files::run::launch::{Launch, same_options, warn, with_ranks};
 use files::run::say::{say, seconds};
@@ -178,9 +178,7 @@ fn text(path: &Path) -> Result<String, OutputError> {
 fn histories(runs: &[RunFolder; 2]) -> Result<Histories, OutputError> {
     let mut sheets = Vec::new();
     for run in runs {
-        let path = run.path().join("history.csv");
-        let sheet = Sheet::parse(&text(&path)?);
-        sheets.push(sheet.map_err(|reason| OutputError::damaged(&path, reason))?);
+        sheets.push(read_sheet(&run.path().join("history.csv"))?);
     }
     let [a, b] = &sheets[..] else {
         unreachable!("two runs");

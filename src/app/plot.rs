@@ -258,6 +258,18 @@ fn history() -> impl TypedValueParser<Value = History> {
         .map(move |name| of(name).unwrap_or(History::Energies))
 }
 
+/// Draws what the arguments of a command line ask for.
+pub(super) fn by_words<const N: usize>(words: [OsString; N]) -> Result<(), String> {
+    #[derive(clap::Parser)]
+    struct Words {
+        #[command(flatten)]
+        args: PlotArgs,
+    }
+    let all = ["plot".into()].into_iter().chain(words);
+    let words = <Words as clap::Parser>::try_parse_from(all).map_err(|error| error.to_string())?;
+    run(&words.args).map_err(|error| error.to_string())
+}
+
 /// Makes the pictures and prints their paths.
 ///
 /// # Errors

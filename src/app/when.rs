@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Parser;
 use serde::{Deserialize, Serialize};
 
-use super::plot::{self, PlotArgs};
+use super::plot;
 use super::replay::{Part, RankArgs, default_folder};
 use desk::sweep::{Condition, Row, rows_of};
 use files::output::{OutputError, RunFolder, from_root};
@@ -182,13 +181,6 @@ fn begins(run: &Path, condition: &Condition) -> Result<Begins, OutputError> {
     })
 }
 
-/// The picture of a run's last snapshot.
-#[derive(Parser)]
-struct Picture {
-    #[command(flatten)]
-    args: PlotArgs,
-}
-
 /// Tells the step and the rows before it, and draws it; returns true if it could be drawn.
 fn show(
     args: &WhenArgs,
@@ -206,14 +198,11 @@ fn show(
     ));
     let picture = folder.join("picture.png");
     let words = [
-        "plot".into(),
         folder.as_os_str().to_owned(),
         "--out".into(),
         picture.clone().into_os_string(),
     ];
-    let drawn = Picture::try_parse_from(words)
-        .map_err(|error| error.to_string())
-        .and_then(|picture| plot::run(&picture.args).map_err(|error| error.to_string()));
+    let drawn = plot::by_words(words);
     match drawn {
         Ok(()) => say(&format!(
             "rows of each step in {}, the snapshot and {} in {}",

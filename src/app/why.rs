@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use clap::Parser;
-
-use super::plot::{self, PlotArgs};
-use files::output::{OutputError, RunFolder, gauge_records, read_small};
+use super::plot;
+use files::output::{OutputError, RunFolder, gauge_records, read_sheet};
 use files::run::say::{say, seconds, warn};
 use model::readable::with_unit;
 use results::sheet::Sheet;
@@ -45,7 +43,7 @@ pub(super) fn tell(out: &Path, id: u64) -> Result<bool, OutputError> {
     let folder = RunFolder::at(out);
     let wanted = name(id);
     let of_many = gauge_records::sheet(&folder, Some(std::slice::from_ref(&wanted)))?;
-    let sheet = of_many.map_or_else(|| read(&folder.gauges()), Ok)?;
+    let sheet = of_many.map_or_else(|| read_sheet(&folder.gauges()), Ok)?;
     let history = History::of(&sheet, &wanted);
     if history.times.is_empty() {
         warn(&format!(
@@ -57,11 +55,6 @@ pub(super) fn tell(out: &Path, id: u64) -> Result<bool, OutputError> {
     history.tell(id);
     draw(out, &wanted);
     Ok(true)
-}
-
-fn read(path: &Path) -> Result<Sheet, OutputError> {
-    let text = String::from_utf8_lossy(&read_small(path)?).into_owned();
-    Sheet::parse(&text).map_err(|reason| OutputError::damaged(path, reason))
 }
 
 /// Rows of one gauge that a particle carried.
@@ -187,13 +180,6 @@ impl<'a> History<'a> {
     }
 }
 
-/// A command line of `whipple plot`.
-#[derive(Parser)]
-struct Picture {
-    #[command(flatten)]
-    args: PlotArgs,
-}
-
 /// Draws the stresses of a gauge beside its readings.
 fn draw(out: &Path, gauge: &str) {
     let folder = RunFolder::at(out);
@@ -201,7 +187,6 @@ fn draw(out: &Path, gauge: &str) {
     let picture = out.join(format!("{gauge}.png"));
     let source = if table.exists() { table } else { records };
     let words = [
-        "plot".into(),
         source.into_os_string(),
         "--gauges".into(),
         gauge.into(),
@@ -210,10 +195,7 @@ fn draw(out: &Path, gauge: &str) {
         "--out".into(),
         picture.clone().into_os_string(),
     ];
-    let drawn = Picture::try_parse_from(words)
-        .map_err(|error| error.to_string())
-        .and_then(|picture| plot::run(&picture.args).map_err(|error| error.to_string()));
-    match drawn {
+    match plot::by_words(words) {
         Ok(()) => say(&format!("  {} shows its stresses", picture.display())),
         Err(message) => warn(&format!("error: {message}")),
     }

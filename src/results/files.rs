@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::{OutputError, regular};
+use crate::{OutputError, Sheet, regular};
 
 /// Ending of unfinished files and folders.
 pub const PARTIAL: &str = ".partial";
@@ -89,6 +89,16 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>, OutputError> {
         }
         _ => OutputError::io("read", path)(error),
     })
+}
+
+/// Reads one of our small tables, which is not trusted.
+///
+/// # Errors
+/// As [`read_small`], and [`OutputError::Damaged`] if it is no table.
+pub fn read_sheet(path: &Path) -> Result<Sheet, OutputError> {
+    let damaged = |reason: String| OutputError::damaged(path, reason);
+    let text = String::from_utf8(read_small(path)?).map_err(|error| damaged(error.to_string()))?;
+    Sheet::parse(&text).map_err(damaged)
 }
 
 /// Makes a folder within one that exists. No path is made anew by its name: what was removed or moved

@@ -149,8 +149,12 @@ fn grains(loaded: &Loaded, census: &Census) -> Vec<Grain> {
         let Some(&piece) = piece_of.get(label) else {
             continue;
         };
-        let first = grains.len();
-        grains.push(loaded.grain(i, piece));
+        let (first, grain) = (grains.len(), loaded.grain(i, piece));
+        // What is frozen is no matter.
+        if grain.size <= 0.0 {
+            continue;
+        }
+        grains.push(grain);
         // The centre of a fragment that reaches across a plane lies in it.
         let centre = &census.fragments[piece as usize].centre;
         for plane in &loaded.symmetry {

@@ -9,7 +9,7 @@ use super::html::{Html, list, note, or_reason, table_of_texts};
 use super::page::{Section, whole};
 use super::picture::chart as drawn;
 use crate::sweep::{Definition, draw};
-use files::output::{Sheet, read_small};
+use files::output::{Sheet, read_sheet, read_small};
 use model::readable::with_unit;
 
 /// The chart that `whipple limit --sweep` lays beside an equation, if it is a picture of pixels.
@@ -88,9 +88,7 @@ fn asked(definition: &Definition) -> Html {
 }
 
 fn sheet(folder: &Path, name: &str) -> Result<Sheet, String> {
-    let bytes = read_small(&folder.join(name)).map_err(|error| error.to_string())?;
-    let text = String::from_utf8(bytes).map_err(|error| error.to_string())?;
-    Sheet::parse(&text)
+    read_sheet(&folder.join(name)).map_err(|error| error.to_string())
 }
 
 /// A table with its numbers in units that fit.

@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value as Json;
 
-use files::output::{OutputError, RunFolder, Sheet, read_small};
+use files::output::{OutputError, RunFolder, Sheet, read_sheet, read_small};
 
 /// Columns that say what a row is of, if a table has several rows of one time.
 const KEYS: &[&str] = &[
@@ -54,8 +53,7 @@ pub fn of_run(folder: &RunFolder) -> Result<Answers, OutputError> {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        let text = text(&path)?;
-        let sheet = Sheet::parse(&text).map_err(|reason| OutputError::damaged(&path, reason))?;
+        let sheet = read_sheet(&path)?;
         let uncertainties = uncertainties(&sheet);
         add_rows(&mut answers, &stem, &sheet.widened());
         for (figure, uncertainty) in uncertainties {
@@ -86,9 +84,8 @@ pub struct Row {
 /// [`OutputError`] if there is no such table, or it cannot be read.
 pub fn rows_of(folder: &RunFolder, table: &str) -> Result<Vec<Row>, OutputError> {
     let path = folder.path().join(table).with_extension("csv");
-    let text = text(&path)?;
     let damaged = |reason: String| OutputError::damaged(&path, reason);
-    let mut sheet = Sheet::parse(&text).map_err(damaged)?.widened();
+    let mut sheet = read_sheet(&path)?.widened();
     let time = sheet.names.iter().position(|name| name == "time");
     let time = time.ok_or_else(|| damaged("it has no times".to_owned()))?;
     let all = std::mem::take(&mut sheet.rows);
@@ -122,11 +119,6 @@ pub fn is_wanted(name: &str, wanted: &[String]) -> bool {
     } else {
         wanted.iter().any(|w| begins(w))
     }
-}
-
-fn text(path: &Path) -> Result<String, OutputError> {
-    let content = read_small(path)?;
-    String::from_utf8(content).map_err(|error| OutputError::damaged(path, error.to_string()))
 }
 
 /// The last uncertainties of a table with a row for each figure, by `MEASURE.FIGURE`.

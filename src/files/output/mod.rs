@@ -40,7 +40,7 @@ pub use history::{Column, Table, Value, unit_of_model};
 pub use lock::{Holder, Presence, RunLock};
 pub use log::Log;
 pub(crate) use results::files::make_folder;
-pub use results::files::{read_regular, read_small, write_atomically, write_json};
+pub use results::files::{read_regular, read_sheet, read_small, write_atomically, write_json};
 pub use results::{NewFile, OutputError, Sheet, VERSION, table_line};
 use results::{files, sheet};
 pub use row_schedule::RowSchedule;
