@@ -168,10 +168,10 @@ impl<'a> History<'a> {
             }));
         }
         events.sort_by_key(|(row, _)| *row);
+        let neighbours = self.values("neighbours");
         for (row, text) in events {
-            let neighbours = self.values("neighbours")[row];
-            let around = if neighbours.is_finite() {
-                format!(" ({neighbours} neighbours)")
+            let around = if neighbours[row].is_finite() {
+                format!(" ({} neighbours)", neighbours[row])
             } else {
                 String::new()
             };

@@ -1,6 +1,6 @@
 //! The catalogue of all fragments: figures, surfaces, and the breakup model beside them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -242,16 +242,12 @@ fn numbers(census: &Census, solids: &[Solid]) -> Vec<u64> {
 
 /// Largest part by which a sum over fragments, dust and what failed is not that over all particles; and the table.
 fn ledger(loaded: &Loaded, census: &Census) -> (f64, Vec<u8>) {
-    let copies: HashMap<u64, u64> = census
-        .fragments
-        .iter()
-        .map(|f| (f.label, f.copies))
-        .collect();
+    let known: HashSet<u64> = census.fragments.iter().map(|f| f.label).collect();
     let odd: [bool; 3] =
         std::array::from_fn(|a| loaded.symmetry.iter().any(|plane| plane.axis.index() == a));
     let images = f64::from(1_u32 << loaded.symmetry.len());
     let [mut dust, mut failed, mut all] = [Ledger::default(); 3];
-    let mut size = 0.0;
+    let (mut size, mut kinetic) = (0.0, 0.0);
     for (i, one) in loaded.matter().enumerate() {
         let Some((_, mass, velocity)) = one else {
             continue;
@@ -259,7 +255,9 @@ fn ledger(loaded: &Loaded, census: &Census) -> (f64, Vec<u8>) {
         all.add(images, mass, &velocity, odd);
         size += images * mass * Vec3::from(velocity).norm();
         let label = census.labels[i];
-        if !copies.contains_key(&label) {
+        if known.contains(&label) {
+            kinetic += 0.5 * images * mass * Vec3::from(velocity).norm_squared();
+        } else {
             let share = if label == u64::MAX {
                 &mut failed
             } else {
@@ -269,13 +267,13 @@ fn ledger(loaded: &Loaded, census: &Census) -> (f64, Vec<u8>) {
         }
     }
     let mut pieces = Ledger::default();
-    let kinetic = kinetic(loaded, census);
     for fragment in &census.fragments {
         #[expect(clippy::cast_precision_loss, reason = "at most eight")]
         let copies = fragment.copies as f64;
         pieces.add(copies, fragment.mass, &fragment.velocity, odd);
     }
-    pieces.kinetic = images * kinetic;
+    // That of its particles, of which its centre has a part.
+    pieces.kinetic = kinetic;
     let mut sum = pieces;
     sum.join(&dust);
     sum.join(&failed);
@@ -307,18 +305,6 @@ fn ledger(loaded: &Loaded, census: &Census) -> (f64, Vec<u8>) {
         closed,
         Table::whole(&names.map(|(name, unit)| Column::new(name, unit)), &rows),
     )
-}
-
-/// Kinetic energy (J) of the particles of fragments on this side of the planes.
-fn kinetic(loaded: &Loaded, census: &Census) -> f64 {
-    let known: std::collections::HashSet<u64> = census.fragments.iter().map(|f| f.label).collect();
-    let mut sum = 0.0;
-    for (one, label) in loaded.matter().zip(&census.labels) {
-        if let Some((_, mass, velocity)) = one.filter(|_| known.contains(label)) {
-            sum += 0.5 * mass * Vec3::from(velocity).norm_squared();
-        }
-    }
-    sum
 }
 
 /// The collision of the heaviest body of a case and of that which meets it fastest, if any does.
