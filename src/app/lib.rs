@@ -4,6 +4,7 @@ mod check;
 pub mod compare;
 mod diff;
 mod export;
+mod fork;
 pub mod fragments;
 mod generate;
 pub mod info;
@@ -58,6 +59,7 @@ use model::readable::is_printable;
   mpirun -n 4 whipple restart runs/quarter --set run.end_time=0.3us
   whipple replay runs/quarter --from 50ns --to 60ns --snapshot-every 1ns
   whipple when \"failed plate\" runs/quarter
+  whipple fork runs/quarter --set material.aluminium.failure.spall.pressure=\"-1.6 GPa\"
   whipple sweep inputs/quarter-impact --vary body.sphere.velocity=\"3..9 km/s\"
   whipple limit nno --bumper 1.2mm --wall 3.2mm --gap 100mm --yield 40ksi
 
@@ -65,7 +67,7 @@ For work on the program itself: `whipple compare` tells whether two results
 agree to the last bit, `whipple bench` measures how fast it steps here.
 
 `whipple COMMAND --help` says more, `whipple --version` which MPI and HDF5 it
-runs with. Only `run`, `restart`, `replay`, `when`, `diff` and `bench` use MPI. Exit codes: 0 done,
+runs with. Only `run`, `restart`, `replay`, `when`, `diff`, `fork` and `bench` use MPI. Exit codes: 0 done,
 1 failed (or `compare` found differences), 2 wrong input, 75 stopped softly with
 a checkpoint."
 )]
@@ -82,6 +84,7 @@ enum Command {
     Replay(replay::ReplayArgs),
     When(when::WhenArgs),
     Diff(diff::DiffArgs),
+    Fork(fork::ForkArgs),
     Check(check::CheckArgs),
     Plan(plan::PlanArgs),
     Plot(Box<plot::PlotArgs>),
@@ -107,7 +110,12 @@ impl Command {
     fn has_ranks(&self) -> bool {
         matches!(
             self,
-            Self::Run(_) | Self::Restart(_) | Self::Replay(_) | Self::When(_) | Self::Diff(_)
+            Self::Run(_)
+                | Self::Restart(_)
+                | Self::Replay(_)
+                | Self::When(_)
+                | Self::Diff(_)
+                | Self::Fork(_)
         )
     }
 }
@@ -142,6 +150,7 @@ pub fn main(commit: &'static str) -> ExitCode {
         Command::Replay(args) => replay::run(&args),
         Command::When(args) => when::run(&args),
         Command::Diff(args) => diff::run(&args),
+        Command::Fork(args) => fork::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Plot(args) => plot::run(&args).map_or_else(

@@ -65,12 +65,17 @@ pub fn run(args: &RestartArgs) -> u8 {
 
 /// Goes on on ranks that have started; returns the exit code. Collective.
 pub(super) fn go(launch: &Launch, args: &RestartArgs) -> u8 {
+    if let Err(error) = input::output_and_run_only(&args.set) {
+        return warn(launch.comm, &error.to_string());
+    }
+    with_any_keys(launch, args)
+}
+
+/// The same with keys that have had no effect so far; returns the exit code. Collective.
+pub(super) fn with_any_keys(launch: &Launch, args: &RestartArgs) -> u8 {
     let comm = launch.comm;
     if let Err(error) = same_options(comm, args) {
         return warn(comm, &format!("error: {error}"));
-    }
-    if let Err(error) = input::output_and_run_only(&args.set) {
-        return warn(comm, &error.to_string());
     }
     let refused = |error: OutputError| warn(comm, &format!("error: {error}"));
     let mut named = match locate(comm, args) {

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::output_format::{self, OutputFormat, wrote};
 use super::plot::out::{PictureFormat, write_chart};
 use super::shell::quoted;
-use desk::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
+use desk::sweep::{self, Converged, Definition, Launch, Shared, Sweep, SweepError, Tally};
 use files::input;
 use files::output::{OutputError, RunLock, Sheet, write_atomically};
 use files::run::exit::{EXIT_FAILED, EXIT_INPUT, EXIT_STOPPED};
@@ -203,6 +203,13 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         return Ok(0);
     }
     let tally = sweep.run(jobs, say)?;
+    let Shared { runs, steps, all } = sweep.shared()?;
+    if runs > 0 {
+        say(&format!(
+            "{} went on from others: {steps} of {all} steps were not computed again",
+            counted(runs as u64, "run")
+        ));
+    }
     let table = folder.join("sweep.csv");
     wrote(&table, "");
     if scattered.contains(&true) {

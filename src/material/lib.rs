@@ -15,6 +15,7 @@ mod porosity;
 mod rest;
 mod stressed;
 pub mod thermal;
+mod undamaged;
 
 pub use constants::Constant;
 pub use declare::{Constants, Listed, Value};

@@ -21,6 +21,7 @@ mod explain;
 mod export;
 mod fault;
 mod folder;
+mod fork;
 mod input;
 mod instructions;
 mod jobs;

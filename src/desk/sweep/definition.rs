@@ -11,6 +11,7 @@ use super::plan::{Plan, Varied};
 use super::point::Point;
 use files::input;
 use files::output::{OutputError, read_small, write_json};
+use model::Case;
 
 /// Name of the file in a sweep's folder.
 const FILE: &str = "sweep.json";
@@ -136,14 +137,9 @@ impl Definition {
     ///
     /// # Errors
     /// [`SweepError::Case`].
-    pub fn check(&self, point: &Point) -> Result<(), SweepError> {
-        let settings: Vec<String> = self
-            .settings
-            .iter()
-            .chain(&point.settings)
-            .cloned()
-            .collect();
-        input::load(&self.case, &settings)?;
-        Ok(())
+    pub fn case_of(&self, point: &Point) -> Result<Case, SweepError> {
+        let all = self.settings.iter().chain(&point.settings);
+        let settings: Vec<String> = all.cloned().collect();
+        Ok(input::load(&self.case, &settings)?)
     }
 }

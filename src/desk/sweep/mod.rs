@@ -10,6 +10,7 @@ mod chart;
 mod condition;
 mod converge;
 mod definition;
+mod forks;
 mod logistic;
 mod plan;
 mod point;
@@ -37,7 +38,8 @@ pub use shots::{Shot, shots};
 pub use values::Values;
 
 use files::input::InputError;
-use files::output::{OutputError, write_atomically};
+use files::output::{OutputError, checkpoint, write_atomically};
+use forks::{Beginning, Forks};
 use model::readable::printable;
 use plan::{Bisection, Known, Plan};
 use point::Point;
@@ -76,6 +78,18 @@ pub struct Sweep {
     ends: BTreeMap<String, Ended>,
     /// Points whose runs were stopped softly.
     stopped: Vec<String>,
+    forks: Forks,
+}
+
+/// What points have taken over from others.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Shared {
+    /// Runs that went on from others.
+    pub runs: usize,
+    /// Steps that were not computed again.
+    pub steps: u64,
+    /// Steps of all runs.
+    pub all: u64,
 }
 
 /// The numbers of points of a sweep that has ended.
@@ -104,9 +118,10 @@ impl Sweep {
             launch,
             ends: BTreeMap::new(),
             stopped: Vec::new(),
+            forks: Forks::default(),
         };
         for point in sweep.points()? {
-            sweep.definition.check(&point)?;
+            sweep.definition.case_of(&point)?;
         }
         Ok(sweep)
     }
@@ -181,16 +196,21 @@ impl Sweep {
             let mut changed = false;
             let mut waits = !running.is_empty();
             let looks = looked.is_none_or(|looked| looked.elapsed() >= PAUSE_FOR_OTHERS);
-            for point in &points {
+            for (at, point) in points.iter().enumerate() {
                 let is_running = running.iter().any(|run| run.name == point.name);
                 if is_running || self.is_over(point) || !(looks || running.len() < jobs) {
                     continue;
                 }
                 match self.launch.state(point) {
                     PointState::Open if running.len() < jobs => {
-                        report(&format!("{}: runs", point.label(&self.plan.keys)));
-                        running.push(self.launch.start(point)?);
                         waits = true;
+                        let (keys, ends) = (&self.plan.keys, &self.ends);
+                        let beginning =
+                            (self.forks).beginning(&self.definition, keys, &points, at, ends)?;
+                        if beginning != Beginning::Later {
+                            report(&format!("{}: runs", point.label(keys)));
+                            running.push(self.launch.start(point, &beginning)?);
+                        }
                     }
                     PointState::Open | PointState::Held => waits = true,
                     end => changed |= self.end(point, end, &mut report)?,
@@ -206,9 +226,39 @@ impl Sweep {
                 std::thread::sleep(PAUSE);
             } else {
                 self.write()?;
+                self.forget_checkpoints()?;
                 return self.tally();
             }
         }
+    }
+
+    /// Removes the checkpoints that runs have kept for others.
+    fn forget_checkpoints(&self) -> Result<(), OutputError> {
+        for (point, kept) in &self.forks.trunks {
+            let run = self.launch.run_folder(point);
+            checkpoint::keep_newest(&run.checkpoints(), *kept)?;
+        }
+        Ok(())
+    }
+
+    /// What points have taken over from others.
+    ///
+    /// # Errors
+    /// [`SweepError`].
+    pub fn shared(&self) -> Result<Shared, SweepError> {
+        let mut shared = Shared::default();
+        for point in self.points()? {
+            let run = self.launch.run_folder(&point);
+            if !matches!(self.ends.get(&point.name), Some(Ended::Answered(_))) {
+                continue;
+            }
+            shared.all += run.status()?.step;
+            if let Some(forked) = run.forked()? {
+                shared.runs += 1;
+                shared.steps += forked.step;
+            }
+        }
+        Ok(shared)
     }
 
     /// Runs one point, by its number from 1 on, in this order of the table; for arrays of a scheduler.
@@ -227,7 +277,8 @@ impl Sweep {
         };
         if self.launch.state(point) == PointState::Open {
             report(&format!("{}: runs", point.label(&self.plan.keys)));
-            let mut running = vec![self.launch.start(point)?];
+            let from_start = Beginning::Start(Vec::new());
+            let mut running = vec![self.launch.start(point, &from_start)?];
             while !running.is_empty() {
                 self.collect(&points, &mut running, &mut report)?;
                 std::thread::sleep(PAUSE);

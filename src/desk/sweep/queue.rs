@@ -6,8 +6,9 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
+use super::forks::Beginning;
 use super::point::Point;
-use files::output::{OutputError, Phase, Presence, RunFolder};
+use files::output::{OutputError, Phase, Presence, RunFolder, checkpoint};
 
 /// The way to start runs.
 #[derive(Debug, Clone)]
@@ -75,13 +76,17 @@ impl Launch {
     ///
     /// # Errors
     /// [`OutputError::Io`].
-    pub fn start(&self, point: &Point) -> Result<Running, OutputError> {
+    pub(super) fn start(
+        &self,
+        point: &Point,
+        beginning: &Beginning,
+    ) -> Result<Running, OutputError> {
         fs::create_dir_all(&self.folder).map_err(OutputError::io("create", &self.folder))?;
         let folder = self.run_folder(point);
         let path = self.folder.join(format!("{}.log", point.name));
         let log = OpenOptions::new().create(true).append(true).open(&path);
         let log = log.map_err(OutputError::io("open", &path))?;
-        let mut command = self.command(point, &folder);
+        let mut command = self.command(point, &folder, beginning);
         let child = spawn(&mut command, &log);
         let program = command.get_program().to_owned();
         let child = child.map_err(OutputError::io("start", Path::new(&program)))?;
@@ -89,7 +94,7 @@ impl Launch {
         Ok(Running { name, child })
     }
 
-    fn command(&self, point: &Point, folder: &RunFolder) -> Command {
+    fn command(&self, point: &Point, folder: &RunFolder, beginning: &Beginning) -> Command {
         let mut command = if self.ranks == 1 {
             Command::new(&self.program)
         } else {
@@ -98,15 +103,32 @@ impl Launch {
             command.arg(&self.program);
             command
         };
-        let checkpoints = folder.checkpoint_folders().unwrap_or_default();
-        if checkpoints.is_empty() {
-            command.arg("run").arg(&self.case);
-            command.arg("--out").arg(folder.path()).arg("--force");
-            for setting in self.settings.iter().chain(&point.settings) {
-                command.arg("--set").arg(setting);
+        let mut checkpoints = folder.checkpoint_folders().unwrap_or_default();
+        // What a fork has taken over is none of its own yet.
+        if let Ok(Some(forked)) = folder.forked() {
+            let is_own =
+                |path: &PathBuf| checkpoint::manifest(path).is_ok_and(|m| m.step > forked.step);
+            checkpoints.retain(is_own);
+        }
+        let (mut begins, settings): (_, &[String]) = match beginning {
+            _ if !checkpoints.is_empty() => (command.arg("restart").arg(folder.path()), &[]),
+            Beginning::Fork { from, settings } => {
+                (command.arg("fork").arg(self.folder.join(from)), settings)
             }
-        } else {
-            command.arg("restart").arg(folder.path());
+            Beginning::Start(more) => {
+                let mut command = command.arg("run").arg(&self.case);
+                for setting in self.settings.iter().chain(&point.settings) {
+                    command = command.arg("--set").arg(setting);
+                }
+                (command, more)
+            }
+            Beginning::Later => return command,
+        };
+        for setting in settings {
+            begins = begins.arg("--set").arg(setting);
+        }
+        if checkpoints.is_empty() {
+            begins.arg("--out").arg(folder.path()).arg("--force");
         }
         command.args(["--threads", &self.threads.to_string()]);
         command

@@ -57,7 +57,7 @@ impl TableExtent {
 }
 
 /// Returns true for a name within a folder.
-fn is_within(name: &str) -> bool {
+pub(super) fn is_within(name: &str) -> bool {
     let mut parts = Path::new(name).components();
     parts.all(|part| matches!(part, Component::Normal(_)))
 }

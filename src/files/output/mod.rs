@@ -4,6 +4,7 @@
 //! before any goes on ([`agree`]), so that callers leave together. Rows are in the order of
 //! particle ids ([`Rows`]), whatever the ranks. [`h5`] is the only module that names HDF5.
 
+mod adopt;
 mod begin;
 pub mod binary_table;
 mod block;
@@ -34,6 +35,7 @@ mod vote;
 
 use std::sync::OnceLock;
 
+pub use adopt::Forked;
 pub use block::Block;
 pub use extents::{ResultExtents, TableExtent};
 pub use history::{Column, Table, Value, unit_of_model};

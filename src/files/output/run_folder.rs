@@ -393,6 +393,8 @@ paths! {
 }
 
 paths! {
+    /// What the run has taken over from another one.
+    forked_file: "forked.json";
     /// The file that stops the run when it appears.
     stop: "stop";
     /// The folder of snapshots.

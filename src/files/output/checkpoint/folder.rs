@@ -147,6 +147,15 @@ pub(in crate::output) fn discard(path: &Path) -> Result<(), OutputError> {
     Ok(())
 }
 
+/// Removes all but the newest `keep` checkpoints.
+///
+/// # Errors
+/// [`OutputError::Io`].
+pub fn keep_newest(folder: &Path, keep: usize) -> Result<(), OutputError> {
+    // As if one were about to come.
+    prune(folder, u64::MAX, keep.saturating_add(1))
+}
+
 /// Removes all but the newest `keep` checkpoints up to `step`, and unfinished ones left by a crash.
 pub(super) fn prune(folder: &Path, step: u64, keep: usize) -> Result<(), OutputError> {
     let mut old = list(folder)?;

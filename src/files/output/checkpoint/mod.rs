@@ -12,7 +12,7 @@ mod state_file;
 mod write;
 
 pub(super) use folder::{DAMAGED, discard, folder_name, step_of};
-pub use folder::{list, list_broken, list_damaged};
+pub use folder::{keep_newest, list, list_broken, list_damaged};
 pub(super) use manifest::run_of;
 pub use manifest::{FORMAT, MANIFEST, Manifest, manifest};
 pub use read::{Restored, read};
