@@ -300,6 +300,7 @@ impl Shape {
         let half = 0.5 * (slab.front - slab.rear);
         let has_left = |&cell: &usize| ends[cell].is_some_and(|ends| bent_by(ends) > half);
         let left_middle = at_middle.cells().filter(has_left).count();
+        // What is open there and not inside the plate reaches beyond what is looked at: the plate has bent away.
         let (above, below) = (slab.front + 0.25 * edge, slab.rear - 0.25 * edge);
         let raised = [
             attached.filled_between(above, f64::MAX),
@@ -331,7 +332,7 @@ impl Shape {
             open: is_open,
             hole: width(rod),
             opening,
-            middle: if 2 * left_middle > at_middle.count() {
+            middle: if at_middle.count() < hole.count() || 2 * left_middle > at_middle.count() {
                 f64::NAN
             } else {
                 width(at_middle.count())
