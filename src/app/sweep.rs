@@ -1,5 +1,7 @@
 //! `whipple sweep` and `whipple converge`: a case at many points.
 
+mod stated;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -68,6 +70,7 @@ Examples:
       --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"failed wall\"
   whipple sweep shield.toml --scatter seed=1,2,3 --scatter spacing=\"0.2, 0.3 mm\" \\
       --vary body.sphere.shape.sphere.radius=\"1..3 mm\" --bisect \"failed wall\"
+  whipple sweep shield.toml --scatter material.wall.failure.spall.pressure=stated
   whipple sweep sweeps/shield                             # goes on
 
 A bisection finds where in the range of the last key its condition changes: an
@@ -88,7 +91,8 @@ pub struct SweepArgs {
 
     /// A key whose values are repetitions of one question, as seeds and constants within their
     /// uncertainty: answers have means and bands over them. `seed` is that of the fillings of all
-    /// bodies, `spacing` takes those of all bodies with it. May be given many times
+    /// bodies, `spacing` takes those of all bodies with it. `stated` in place of values takes the ends of
+    /// the range that the library states for the constant, and its own number. May be given many times
     #[arg(long, value_name = "KEY=VALUES")]
     scatter: Vec<String>,
 
@@ -184,6 +188,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         definition.scatter.clone_from(&args.scatter);
         definition.bisect.clone_from(&args.bisect);
         definition.within = args.within;
+        definition.scatter = stated::with_values(&definition)?;
         definition
     };
     let folder = definition.folder.clone();
