@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::output_format::{self, OutputFormat, wrote};
-use super::plot::out::{PictureFormat, write_chart};
+use super::plot::out::{PictureFormat, write, write_chart};
 use super::shell::quoted;
 use desk::sweep::{self, Converged, Definition, Launch, Sweep, SweepError, Tally};
 use files::input;
@@ -55,8 +55,8 @@ pub struct Shares {
 /// table in the end. Points are added by more values of the same keys.
 ///
 /// The table is sweep.csv, its chart sweep.png; a bisection has limits.csv and limits.png; with
-/// --format svg they are SVG. With --scatter there are bands.csv, bands.png and effects.csv, what each
-/// scattered key does to the means.
+/// --format svg they are SVG. With --scatter there are bands.csv and bands.png, and effects.csv and
+/// effects.png, what each scattered key does to the means.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values,
@@ -223,6 +223,15 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     if let Some((chart, path)) = sweep::draw(&folder, &scattered, args.chart.as_deref())? {
         let path = path.with_extension(args.picture.ending());
         if let Err(error) = write_chart(&chart, None, &path) {
+            warn(&format!("warning: {error}"));
+        }
+    }
+    if scattered.contains(&true)
+        && let Some((chart, path)) = sweep::draw_effects(&folder, args.chart.as_deref())?
+    {
+        let path = path.with_extension(args.picture.ending());
+        let drawn = chart.draw(None).and_then(|canvas| write(&canvas, &path));
+        if let Err(error) = drawn {
             warn(&format!("warning: {error}"));
         }
     }

@@ -289,9 +289,11 @@ fn scattered_keys_have_bands() {
     assert!((bands[1][4].parse::<f64>().unwrap() / mean - 1.0).abs() < 1e-12);
     assert_eq!(effects.len(), 5);
     assert_eq!(effects[1][3], "seed");
-    assert!(out.join("bands.png").is_file());
+    assert!(out.join("bands.png").is_file() && out.join("effects.png").is_file());
     end(command(WHIPPLE).arg("report").arg(&out)).with_code(0);
     let page = text(&out.join("report.html"));
+    let pictures = page.matches("data:image/svg+xml").count();
+    assert_eq!(pictures, 2, "bands and effects");
     for part in [
         "<h2>Bands</h2>",
         "<h2>What matters</h2>",

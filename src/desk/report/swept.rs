@@ -7,8 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::html::{Html, list, note, or_reason, table_of_texts};
 use super::page::{Section, whole};
-use super::picture::chart as drawn;
-use crate::sweep::{Definition, draw};
+use super::picture::{WIDTH, chart as drawn, image};
+use crate::sweep::{Definition, draw, draw_effects};
 use files::output::{Sheet, read_sheet, read_small};
 use model::readable::with_unit;
 
@@ -59,7 +59,14 @@ pub fn swept(folder: &Path) -> Result<String, String> {
         });
         sections.push(("bands", "Bands", bands));
         let effects = sheet(folder, "effects.csv").map(|effects| {
-            table(&strongest_first(effects)).then(note(
+            let picture = match draw_effects(folder, None) {
+                Ok(Some((chart, _))) => {
+                    let canvas = chart.draw(Some(WIDTH)).map_err(|error| error.to_string());
+                    image(canvas, "what each scattered key does to the answer")
+                }
+                _ => Html::default(),
+            };
+            picture.then(table(&strongest_first(effects))).then(note(
                 "Means over all other scattered keys at the value of each key that gives the least and the largest of them.",
             ))
         });
