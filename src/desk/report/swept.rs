@@ -66,6 +66,10 @@ pub fn swept(folder: &Path) -> Result<String, String> {
                 }
                 _ => Html::default(),
             };
+            let effects = match &points {
+                Ok(points) => with_values(effects, points),
+                Err(_) => effects,
+            };
             picture.then(table(&strongest_first(effects))).then(note(
                 "Means over all other scattered keys at the value of each key that gives the least and the largest of them.",
             ))
@@ -126,6 +130,23 @@ fn table(sheet: &Sheet) -> Html {
     } else {
         Ok(table_of_texts(&head, rows))
     })
+}
+
+/// Effects with the values of keys in units that fit, which the columns of points have.
+fn with_values(mut effects: Sheet, points: &Sheet) -> Sheet {
+    let column = |name: &str| effects.names.iter().position(|own| own == name);
+    if let [Some(key), Some(low), Some(high)] = ["key", "at", "at_largest"].map(column) {
+        for (_, row) in &mut effects.rows {
+            let own = points.names.iter().position(|name| *name == row[key]);
+            let unit = own.map_or("", |own| points.units[own].trim_matches('-'));
+            for at in [low, high] {
+                if let Ok(number) = row[at].parse::<f64>() {
+                    row[at] = with_unit(number, unit);
+                }
+            }
+        }
+    }
+    effects
 }
 
 /// Effects by answer, the largest first.

@@ -120,7 +120,12 @@ fn effects_about_means(
                 number(effect, least)? - mean,
                 number(effect, largest)? - mean,
             ];
-            let values = [low, high].map(|column| valued(&effect[column], unit_of(&effect[key])));
+            let value = |column: usize| valued(&effect[column], unit_of(&effect[key]));
+            let values = if ends[0] < ends[1] {
+                [low, high].map(value)
+            } else {
+                [String::new(), "no difference".to_owned()]
+            };
             let name = label_of(&effect[key]);
             Some(Bar { name, ends, values })
         });
@@ -353,7 +358,8 @@ mod tests {
             "# units: m/s,-,-,-,-,-,-,-,-\n\
              v,answer,unit,key,least,at,largest,at_largest,effect\n\
              3000.0,hole,m,seed,1.5,1,3.5,2,2.0\n\
-             3000.0,hole,m,pressure,2.0,-1.7e9,3.0,-1.1e9,1.0\n",
+             3000.0,hole,m,pressure,2.0,-1.7e9,3.0,-1.1e9,1.0\n\
+             3000.0,hole,m,alpha,2.5,1,2.5,2,0.0\n",
         );
         let keys = ["v", "material.wall.failure.spall.pressure", "seed"].map(str::to_owned);
         let draw = |answer| effects_about_means(&keys, [&points, &bands, &effects], answer);
@@ -365,6 +371,7 @@ mod tests {
         assert_eq!(group.bars[0].values, ["1", "2"]);
         assert_eq!(group.bars[1].name, "spall pressure");
         assert_eq!(group.bars[1].values, ["-1.7 GPa", "-1.1 GPa"]);
+        assert_eq!(group.bars[2].values, ["", "no difference"]);
         assert_eq!(draw(Some("verdict")).unwrap(), None);
         assert!(draw(Some("nothing")).is_err());
     }
