@@ -11,7 +11,8 @@ use material::{Constant, Material, Value, library};
 
 /// Print the material library: all names, or each number of one material with its source
 ///
-/// What is printed of a material is a table of the input that gives the same material.
+/// What is printed of a material is a table of the input that gives the same material. Where a source states a range, it stands
+/// before the source.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   whipple materials
@@ -95,26 +96,46 @@ pub fn table(name: &str, sources: Sources) -> Option<String> {
     let material = library::find(name)?;
     let title = library::title(name).unwrap_or_default();
     let mut text = format!("# {title}\n[material.{name}]\n");
-    let lines: Vec<(String, &str)> = material
+    let lines: Vec<(String, String, &str)> = material
         .constants()
         .iter()
         .map(|constant| {
             let line = format!("{} = {}", constant.key, written(constant.value));
             let source = library::source(name, &constant.key).unwrap_or("no source");
-            (line, source)
+            (line, range(name, constant), source)
         })
         .collect();
-    let width = lines.iter().map(|(line, _)| line.len()).max().unwrap_or(0);
+    let width = lines.iter().map(|(line, ..)| line.len()).max().unwrap_or(0);
     let mut last = "";
-    for (line, source) in lines {
-        let _ = match sources {
-            Sources::Once if source == last => writeln!(text, "{line}"),
-            _ => writeln!(text, "{line:<width$}  # {source}"),
+    for (line, range, source) in lines {
+        let said = match sources {
+            Sources::Once if source == last => "",
+            _ => source,
+        };
+        let parts: Vec<&str> = [&range[..], said]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect();
+        let _ = match &parts[..] {
+            [] => writeln!(text, "{line}"),
+            parts => writeln!(text, "{line:<width$}  # {}", parts.join("; ")),
         };
         last = source;
     }
     let _ = writeln!(text, "# {}", derived(&material));
     Some(text)
+}
+
+/// The range that the source of a number states, as in `-1.7 GPa to -1.1 GPa`; nothing where it states none.
+fn range(name: &str, constant: &Constant) -> String {
+    let range = library::range(name, &constant.key);
+    match (range, constant.value) {
+        (Some([least, largest]), Value::Number(_, unit)) => {
+            let [least, largest] = [least, largest].map(|end| scaled(end, unit, usize::MAX));
+            format!("{least} to {largest}")
+        }
+        _ => String::new(),
+    }
 }
 
 /// Quantities that users compare and no table holds.
@@ -127,7 +148,7 @@ fn derived(material: &Material) -> String {
 }
 
 /// A value as the input writes it.
-pub(super) fn written(value: Value) -> String {
+pub(crate) fn written(value: Value) -> String {
     match value {
         Value::Word(word) => format!("\"{word}\""),
         Value::Number(number, "") => format!("{number:?}"),
@@ -179,7 +200,8 @@ fn as_json(name: &str) -> Option<serde_json::Value> {
                 Value::Word(word) => (json!(word), ""),
             };
             let source = library::source(name, &constant.key);
-            json!({ "key": constant.key, "value": value, "unit": unit, "source": source })
+            let range = library::range(name, &constant.key);
+            json!({ "key": constant.key, "value": value, "unit": unit, "range": range, "source": source })
         })
         .collect();
     Some(json!({
@@ -207,6 +229,27 @@ mod tests {
             let case = parse(name, &text, &[]).unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(Some(&case.materials[0]), library::find(name).as_ref());
         }
+    }
+
+    #[test]
+    fn ranges_stand_beside_their_numbers() {
+        let text = table("copper-ductile", Sources::All).unwrap();
+        let line = text
+            .lines()
+            .find(|line| line.starts_with("failure.spall.pressure"));
+        let line = line.unwrap();
+        assert!(
+            line.contains("# -2 GPa to -1.2 GPa; assumed: the middle"),
+            "{line}"
+        );
+        let document = as_json("copper-ductile").unwrap();
+        let constants = document["constants"].as_array().unwrap();
+        let ranges: Vec<_> = constants
+            .iter()
+            .filter(|constant| !constant["range"].is_null())
+            .collect();
+        assert_eq!(ranges.len(), 1);
+        assert_eq!(ranges[0]["range"], json!([-2.0e9, -1.2e9]));
     }
 
     #[test]

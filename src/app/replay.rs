@@ -1,5 +1,7 @@
 //! `whipple replay`: part of a run again, with more output, proved to be the same.
 
+mod watched;
+
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +18,10 @@ use files::run::launch::{Launch, same_options, warn, with_ranks};
 use files::run::parse_until;
 use files::run::say::{say, seconds};
 use files::run::verbosity::LogFormat;
+use model::Case;
 use model::readable::one_line;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// Compute a part of a run again, with more output, and prove that it is the same
 ///
@@ -32,6 +37,8 @@ use model::readable::one_line;
   mpirun -n 4 whipple replay runs/impact --to 0.1us \\
       --set measure.every=1ns --out runs/impact-measured
   whipple replay runs/impact --why 4711 --gauge 0,0,-2mm
+  whipple replay runs/impact --from 3us --to 4us \\
+      --watch=-1mm,-1mm,-2mm:1mm,1mm,0mm
   whipple plot replays/impact --movie cloud.gif
 
 Exit codes: 0 it is the same; 1 it differs, or a run failed; 2 wrong input;
@@ -49,7 +56,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "TIME", value_parser = parse_until)]
     to: Option<f64>,
 
-    /// Time between snapshots, as in 10ns
+    /// Time between snapshots, as in 10ns; of the boxes alone where there are some
     #[arg(long, value_name = "TIME")]
     snapshot_every: Option<String>,
 
@@ -64,6 +71,11 @@ pub struct ReplayArgs {
     /// A gauge at X,Y,Z that reads each step, as in 1mm,0,-2mm; may be given many times
     #[arg(long = "gauge", value_name = "PLACE")]
     gauges: Vec<String>,
+
+    /// A box LOWER:UPPER, as in -1mm,-1mm,-2mm:1mm,1mm,0mm, of which there are snapshots of their own, some fifty of the part or
+    /// one each --snapshot-every; a side that is left empty is open; may be given many times
+    #[arg(long = "watch", value_name = "BOX", allow_hyphen_values = true)]
+    watched: Vec<String>,
 
     /// Tell the history of the particle of an id, as snapshots show it: what it bore, met and lost; may be given many times
     #[arg(long, value_name = "ID")]
@@ -179,24 +191,33 @@ pub(super) fn default_folder(run: &Path, ending: &str) -> PathBuf {
 /// The keys that the options change. Collective.
 fn overrides(comm: &Comm, args: &ReplayArgs) -> Result<Vec<String>, String> {
     let mut set = Vec::new();
+    // Where boxes are watched, snapshots of all else come as before.
+    let of_all = args
+        .snapshot_every
+        .as_ref()
+        .filter(|_| args.watched.is_empty());
     let asked = [
-        ("output.snapshot_every", &args.snapshot_every),
-        ("output.history_every", &args.rows_every),
+        ("output.snapshot_every", of_all),
+        ("output.history_every", args.rows_every.as_ref()),
     ];
     for (key, value) in asked {
-        set.extend(value.as_ref().map(|value| format!("{key}={value}")));
+        set.extend(value.map(|value| format!("{key}={value}")));
+    }
+    if !args.watched.is_empty() {
+        let (taken, end) = of_case(comm, args, |case| {
+            let names = case.output.snapshots.iter().map(|own| own.name.clone());
+            (names.collect::<Vec<_>>(), case.run.end_time)
+        })?;
+        let asked = watched::Asked {
+            taken: &taken,
+            every: args.snapshot_every.as_deref(),
+            part: [args.from.unwrap_or(0.0), args.to.unwrap_or(end)],
+        };
+        set.extend(watched::schedules(&args.watched, &asked)?);
     }
     if !args.fields.is_empty() {
         snapshot::quantities(&args.fields).map_err(|error| format!("error: {error}"))?;
-        let own = from_root(comm, || {
-            let path = RunFolder::at(&args.run).case();
-            let (path, text) =
-                input::text(&path).map_err(|error| OutputError::OtherRank(error.to_string()))?;
-            let case = input::parse(&path.display().to_string(), &text, &[]);
-            case.map(|case| case.output.fields)
-                .map_err(|error| OutputError::OtherRank(error.to_string()))
-        });
-        let own = own.map_err(|error| error.to_string())?;
+        let own = of_case(comm, args, |case| case.output.fields)?;
         // Those that none names are the usual ones.
         let usual = snapshot::quantities(&own).map_err(|error| format!("error: {error}"))?;
         let mut all: Vec<String> = usual.iter().map(|shown| shown.name().to_owned()).collect();
@@ -221,6 +242,20 @@ fn overrides(comm: &Comm, args: &ReplayArgs) -> Result<Vec<String>, String> {
     set.extend(args.why.iter().map(|id| why::gauge(*id)));
     set.extend_from_slice(&args.set);
     Ok(set)
+}
+
+/// Something of the run's case. Collective.
+fn of_case<T: Serialize + DeserializeOwned>(
+    comm: &Comm,
+    args: &ReplayArgs,
+    take: impl FnOnce(Case) -> T,
+) -> Result<T, String> {
+    let taken = from_root(comm, || {
+        let case = input::load(&RunFolder::at(&args.run).case(), &[]);
+        case.map(take)
+            .map_err(|error| OutputError::OtherRank(error.to_string()))
+    });
+    taken.map_err(|error| error.to_string())
 }
 
 /// A part of a run that is computed again.

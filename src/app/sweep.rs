@@ -1,12 +1,14 @@
 //! `whipple sweep` and `whipple converge`: a case at many points.
 
+mod stated;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
 use super::output_format::{self, OutputFormat, wrote};
-use super::plot::out::{PictureFormat, write_chart};
+use super::plot::out::{PictureFormat, write, write_chart};
 use super::shell::quoted;
 use desk::sweep::{self, Converged, Definition, Launch, Shared, Sweep, SweepError, Tally};
 use files::input;
@@ -53,8 +55,8 @@ pub struct Shares {
 /// table in the end. Points are added by more values of the same keys.
 ///
 /// The table is sweep.csv, its chart sweep.png; a bisection has limits.csv and limits.png; with
-/// --format svg they are SVG. With --scatter there are bands.csv, bands.png and effects.csv, what each
-/// scattered key does to the means.
+/// --format svg they are SVG. With --scatter there are bands.csv and bands.png, and effects.csv and
+/// effects.png, what each scattered key does to the means.
 #[derive(Debug, Clone, clap::Args)]
 #[command(
     after_help = "Values: a list (\"3, 5, 7 km/s\"), a range (\"3..9 km/s\", five values,
@@ -68,6 +70,7 @@ Examples:
       --vary body.sphere.velocity=\"2..8 km/s\" --bisect \"failed wall\"
   whipple sweep shield.toml --scatter seed=1,2,3 --scatter spacing=\"0.2, 0.3 mm\" \\
       --vary body.sphere.shape.sphere.radius=\"1..3 mm\" --bisect \"failed wall\"
+  whipple sweep shield.toml --scatter material.wall.failure.spall.pressure=stated
   whipple sweep sweeps/shield                             # goes on
 
 A bisection finds where in the range of the last key its condition changes: an
@@ -88,7 +91,8 @@ pub struct SweepArgs {
 
     /// A key whose values are repetitions of one question, as seeds and constants within their
     /// uncertainty: answers have means and bands over them. `seed` is that of the fillings of all
-    /// bodies, `spacing` takes those of all bodies with it. May be given many times
+    /// bodies, `spacing` takes those of all bodies with it. `stated` in place of values takes the ends of
+    /// the range that the library states for the constant, and its own number. May be given many times
     #[arg(long, value_name = "KEY=VALUES")]
     scatter: Vec<String>,
 
@@ -184,6 +188,7 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
         definition.scatter.clone_from(&args.scatter);
         definition.bisect.clone_from(&args.bisect);
         definition.within = args.within;
+        definition.scatter = stated::with_values(&definition)?;
         definition
     };
     let folder = definition.folder.clone();
@@ -225,6 +230,15 @@ fn sweep(args: &SweepArgs) -> Result<u8, SweepError> {
     if let Some((chart, path)) = sweep::draw(&folder, &scattered, args.chart.as_deref())? {
         let path = path.with_extension(args.picture.ending());
         if let Err(error) = write_chart(&chart, None, &path) {
+            warn(&format!("warning: {error}"));
+        }
+    }
+    if scattered.contains(&true)
+        && let Some((chart, path)) = sweep::draw_effects(&folder, args.chart.as_deref())?
+    {
+        let path = path.with_extension(args.picture.ending());
+        let drawn = chart.draw(None).and_then(|canvas| write(&canvas, &path));
+        if let Err(error) = drawn {
             warn(&format!("warning: {error}"));
         }
     }

@@ -126,7 +126,7 @@ impl Pen<'_> {
 }
 
 /// A text cut off so that it fits a width.
-fn shorten(text: &str, size: f32, room: f32) -> String {
+pub fn shorten(text: &str, size: f32, room: f32) -> String {
     if font::width(text, size) <= room {
         return text.to_owned();
     }

@@ -49,6 +49,7 @@ pub use chart::history::History;
 pub use chart::profile::{Along, ProfileRequest, Profiles};
 pub use chart::series::parse_pair;
 pub use chart::tables::{Columns, Points, Tables, widest};
+pub use chart::tornado::{Bar, Group, Tornado};
 pub use colour::Scale;
 pub use colour::body as colour_of;
 pub use error::PlotError;

@@ -211,3 +211,60 @@ fn the_history_of_a_particle_is_told() {
         "{ended:#?}"
     );
 }
+
+/// Snapshots of a box hold what is in it alone, come as often as asked, with the bits of any ranks; the whole model's come as in the run.
+#[test]
+fn a_box_has_snapshots_of_its_own() {
+    let place = tempfile::tempdir().unwrap();
+    let run = place.path().join("run");
+    end(&mut coarse_run(2, &run)).with_code(0);
+    let watched = |number: usize, name: &str, more: &[&str]| {
+        let out = place.path().join(name);
+        let mut again = ranks(number);
+        again.arg("replay").arg(&run).arg("--out").arg(&out);
+        again.args(["--from", "0.1us", "--to", "0.12us"]).args(more);
+        (end(&mut again), out)
+    };
+    let box_of_few = "--watch=-1mm,-1mm,-0.1mm:0.2mm,0.2mm,";
+    let [one, three] = [(1, "one"), (3, "three")].map(|(number, name)| {
+        let (ended, out) = watched(number, name, &[box_of_few, "--snapshot-every", "2ns"]);
+        assert!(ended.stdout.contains("to the last bit"), "{ended:#?}");
+        let ended = ended.with_code(0);
+        let schedule = out.join("snapshots/watch");
+        assert!(names(&schedule) > 5, "{ended:#?}");
+        out
+    });
+    let compared = end(command(WHIPPLE).arg("compare").arg(&one).arg(&three)).with_code(0);
+    assert!(!compared.stdout.contains("differ"), "{compared:#?}");
+    let snapshot = |folder: &Path| {
+        let mut all: Vec<_> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .collect();
+        all.retain(|path| path.extension().is_some_and(|ending| ending == "vtkhdf"));
+        all.sort();
+        all.pop().unwrap()
+    };
+    let info = |path: &Path| -> serde_json::Value {
+        let told = end(command(WHIPPLE).arg("info").arg("--json").arg(path)).with_code(0);
+        serde_json::from_str(&told.stdout).unwrap()
+    };
+    let [part, whole] =
+        ["snapshots/watch", "snapshots"].map(|folder| info(&snapshot(&one.join(folder))));
+    let count = |of: &serde_json::Value| -> u64 {
+        let bodies = of["bodies"].as_array().unwrap().iter();
+        bodies.map(|body| body["particles"].as_u64().unwrap()).sum()
+    };
+    assert!(
+        0 < count(&part) && count(&part) < count(&whole) / 2,
+        "{part} {whole}"
+    );
+    // Without an interval there are some fifty, as far as steps allow.
+    let (ended, out) = watched(1, "two-boxes", &[box_of_few, "--watch=,,:,,0mm"]);
+    ended.with_code(0);
+    for name in ["watch", "watch-2"] {
+        assert!(names(&out.join("snapshots").join(name)) > 5);
+    }
+    let (ended, _) = watched(1, "none", &["--watch=1mm,1mm,1mm"]);
+    assert!(ended.with_code(2).stderr.contains("LOWER:UPPER"));
+}

@@ -289,9 +289,11 @@ fn scattered_keys_have_bands() {
     assert!((bands[1][4].parse::<f64>().unwrap() / mean - 1.0).abs() < 1e-12);
     assert_eq!(effects.len(), 5);
     assert_eq!(effects[1][3], "seed");
-    assert!(out.join("bands.png").is_file());
+    assert!(out.join("bands.png").is_file() && out.join("effects.png").is_file());
     end(command(WHIPPLE).arg("report").arg(&out)).with_code(0);
     let page = text(&out.join("report.html"));
+    let pictures = page.matches("data:image/svg+xml").count();
+    assert_eq!(pictures, 2, "bands and effects");
     for part in [
         "<h2>Bands</h2>",
         "<h2>What matters</h2>",
@@ -300,4 +302,40 @@ fn scattered_keys_have_bands() {
     ] {
         assert!(page.contains(part), "{part}");
     }
+}
+
+/// What the library states for a constant is scattered; where it states nothing, the message names the key.
+#[test]
+fn stated_ranges_are_scattered() {
+    let place = tempfile::tempdir().unwrap();
+    let out = place.path().join("sweep");
+    let key = "material.aluminium.failure.spall.pressure";
+    let scatter = format!("{key}=stated");
+    let more = ["--scatter", &scatter, "--answers", "summary.steps"];
+    let refused = end(&mut sweep(&out, &more)).with_code(2);
+    let told = "the library states no range of `failure.spall.pressure` for aluminium-2024;";
+    assert!(
+        refused.stderr.contains(&scatter) && refused.stderr.contains(told),
+        "{refused:#?}"
+    );
+    let other = ["--scatter", "material.steel.density=stated"];
+    let refused = end(&mut sweep(&out, &other)).with_code(2);
+    assert!(
+        refused.stderr.contains("no `material.steel.library`"),
+        "{refused:#?}"
+    );
+    assert!(!out.exists());
+
+    let ductile = [
+        "--set",
+        "material.aluminium.library=aluminium-2024-ductile",
+        "--slurm",
+    ];
+    end(&mut sweep(&out, &[&more[..], &ductile].concat())).with_code(0);
+    let kept = text(&out.join("sweep.json"));
+    assert!(
+        kept.contains(&format!("{key}=-1.7 GPa, -1.4 GPa, -1.1 GPa")),
+        "{kept}"
+    );
+    assert!(text(&out.join("sweep.sbatch")).contains("--array=1-3\n"));
 }

@@ -60,7 +60,8 @@ pub fn page() -> String {
     {
         write_row(&mut page, name, &material);
     }
-    page.push_str("\n## Constants\n\nA source stands beside the first number that comes from it. The numbers below without one come from the same.\n");
+    page.push_str("\n## Constants\n\nA source stands beside the first number that comes from it. The numbers below without one come from the same. Where a source states a range, \
+         it stands before the source; [`--scatter KEY=stated`](sweeps.md#bands) takes its ends.\n");
     for (name, table) in
         all().filter_map(|name| table(name, Sources::Once).map(|table| (name, table)))
     {

@@ -7,7 +7,7 @@ use super::html::{Html, missing};
 use plot::{Canvas, Chart};
 
 /// Width of charts (pixels).
-const WIDTH: u32 = 1000;
+pub const WIDTH: u32 = 1000;
 
 /// A chart with an alternative text, or why there is none.
 pub fn chart(chart: Result<Chart, String>, alt: &str) -> Html {

@@ -7,8 +7,8 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::html::{Html, list, note, or_reason, table_of_texts};
 use super::page::{Section, whole};
-use super::picture::chart as drawn;
-use crate::sweep::{Definition, draw};
+use super::picture::{WIDTH, chart as drawn, image};
+use crate::sweep::{Definition, draw, draw_effects};
 use files::output::{Sheet, read_sheet, read_small};
 use model::readable::with_unit;
 
@@ -59,7 +59,18 @@ pub fn swept(folder: &Path) -> Result<String, String> {
         });
         sections.push(("bands", "Bands", bands));
         let effects = sheet(folder, "effects.csv").map(|effects| {
-            table(&strongest_first(effects)).then(note(
+            let picture = match draw_effects(folder, None) {
+                Ok(Some((chart, _))) => {
+                    let canvas = chart.draw(Some(WIDTH)).map_err(|error| error.to_string());
+                    image(canvas, "what each scattered key does to the answer")
+                }
+                _ => Html::default(),
+            };
+            let effects = match &points {
+                Ok(points) => with_values(effects, points),
+                Err(_) => effects,
+            };
+            picture.then(table(&strongest_first(effects))).then(note(
                 "Means over all other scattered keys at the value of each key that gives the least and the largest of them.",
             ))
         });
@@ -119,6 +130,23 @@ fn table(sheet: &Sheet) -> Html {
     } else {
         Ok(table_of_texts(&head, rows))
     })
+}
+
+/// Effects with the values of keys in units that fit, which the columns of points have.
+fn with_values(mut effects: Sheet, points: &Sheet) -> Sheet {
+    let column = |name: &str| effects.names.iter().position(|own| own == name);
+    if let [Some(key), Some(low), Some(high)] = ["key", "at", "at_largest"].map(column) {
+        for (_, row) in &mut effects.rows {
+            let own = points.names.iter().position(|name| *name == row[key]);
+            let unit = own.map_or("", |own| points.units[own].trim_matches('-'));
+            for at in [low, high] {
+                if let Ok(number) = row[at].parse::<f64>() {
+                    row[at] = with_unit(number, unit);
+                }
+            }
+        }
+    }
+    effects
 }
 
 /// Effects by answer, the largest first.

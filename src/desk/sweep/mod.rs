@@ -27,7 +27,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 pub use answers::{Answers, Row, rows_of};
-pub use chart::draw;
+pub use chart::{draw, draw_effects};
 pub use condition::Condition;
 pub use converge::Converged;
 pub use definition::Definition;

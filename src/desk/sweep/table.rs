@@ -61,8 +61,14 @@ impl Column {
     }
 }
 
+/// Units that have names of their own.
+const NAMED: [(&str, Powers); 2] = [("Pa", [-1, 1, -2, 0, 0]), ("J", [2, 1, -2, 0, 0])];
+
 /// The SI unit of some powers: `m/s`.
 fn unit(powers: &Powers) -> String {
+    if let Some((name, _)) = NAMED.iter().find(|(_, own)| own == powers) {
+        return (*name).to_owned();
+    }
     let symbols = ["m", "kg", "s", "K", "rad"];
     let power = |&(symbol, power): &(&str, i32)| match power.abs() {
         1 => symbol.to_owned(),
@@ -222,7 +228,8 @@ mod tests {
     #[test]
     fn units_are_written_as_inputs_take_them() {
         assert_eq!(unit(&[1, 0, -1, 0, 0]), "m/s");
-        assert_eq!(unit(&[-1, 1, -2, 0, 0]), "kg/m/s^2");
+        assert_eq!(unit(&[-1, 1, -2, 0, 0]), "Pa");
+        assert_eq!(unit(&[-1, 1, -3, 0, 0]), "kg/m/s^3");
         assert_eq!(unit(&[0, 0, -1, 0, 0]), "1/s");
         assert_eq!(unit(&[0; 5]), "");
     }

@@ -42,6 +42,7 @@ mod metals;
 mod paper;
 mod polymers;
 mod porous;
+mod ranges;
 mod rocks;
 
 /// Parts from which a record makes its material.
@@ -117,6 +118,15 @@ pub fn source(name: &str, key: &str) -> Option<&'static str> {
     let fits = |(begin, _): &&(&str, &str)| key.starts_with(begin);
     let sources = record(name)?.sources;
     sources.iter().find(fits).map(|(_, source)| *source)
+}
+
+/// The least and the largest number (SI) that the source of the number at a key of the material of this name states; nothing where it
+/// states none.
+#[must_use]
+pub fn range(name: &str, key: &str) -> Option<[f64; 2]> {
+    let mut all = ranges::RANGES.iter();
+    let found = all.find(|(material, of, _)| (*material, *of) == (name, key));
+    found.map(|(.., range)| *range)
 }
 
 fn record(name: &str) -> Option<&'static Record> {

@@ -59,11 +59,11 @@ pub struct Chart {
 }
 
 /// An axis as it is drawn.
-struct Ruler {
+pub(super) struct Ruler {
     /// Ends, in readable units or powers of ten of them.
-    span: [f64; 2],
-    unit: Readable,
-    ticks: Ticks,
+    pub span: [f64; 2],
+    pub unit: Readable,
+    pub ticks: Ticks,
     logarithmic: bool,
 }
 
@@ -161,7 +161,7 @@ fn draw_curve(
 }
 
 impl Ruler {
-    fn new(axis: &Quantity, values: impl Iterator<Item = f64>, marks: f64) -> Self {
+    pub fn new(axis: &Quantity, values: impl Iterator<Item = f64>, marks: f64) -> Self {
         let known = |v: &f64| v.is_finite() && (*v > 0.0 || !axis.logarithmic);
         let all = values
             .filter(known)
@@ -210,7 +210,7 @@ impl Ruler {
     }
 
     /// The position of an SI value on the axis.
-    fn position(&self, value: f64) -> f64 {
+    pub fn position(&self, value: f64) -> f64 {
         let value = value / self.unit.size;
         if self.logarithmic {
             value.log10()

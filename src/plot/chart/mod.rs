@@ -11,3 +11,4 @@ pub mod series;
 pub mod sheet;
 pub mod table;
 pub mod tables;
+pub mod tornado;
