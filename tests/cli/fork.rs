@@ -1,7 +1,9 @@
 //! Runs that begin with what another run had computed: the bits of their own whole runs.
 
+use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 use crate::program::{WHIPPLE, command, end, ranks};
 
@@ -162,4 +164,44 @@ fn a_sweep_of_constants_of_failure_shares_what_they_have_in_common() {
             .map(|run| std::fs::read(run.join(table)).unwrap());
         assert!(a == b, "{table}");
     }
+}
+
+/// A sweep whose runs are killed with it, wherever they are, goes on and has the same table.
+#[test]
+#[ignore = "slow"]
+fn a_killed_sweep_of_forks_has_the_same_table() {
+    let place = tempfile::tempdir().unwrap();
+    let sweep = |out: &str| {
+        let mut sweep = command(WHIPPLE);
+        sweep.args([
+            "sweep",
+            &case(place.path()),
+            "--jobs",
+            "2",
+            "--threads",
+            "1",
+        ]);
+        sweep.args(["--answers", "bodies.wall,summary.steps", "--vary"]);
+        sweep.arg(format!("{LIMIT}=-1.2, -1.5, -1.8 GPa"));
+        sweep.args([
+            "--vary",
+            "material.wall.failure.johnson_cook.d1=0.1, 0.2",
+            "--out",
+        ]);
+        sweep.arg(place.path().join(out));
+        sweep
+    };
+    let table =
+        |out: &str| std::fs::read_to_string(place.path().join(out).join("sweep.csv")).unwrap();
+    end(&mut sweep("peace")).with_code(0);
+    for tenths in [5, 9, 14, 18, 21, 7, 12, 25] {
+        let mut group = sweep("killed").process_group(0).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(100 * tenths));
+        // SAFETY: a signal to the group of a process that this test has started and not waited for.
+        unsafe { libc::kill(-group.id().cast_signed(), libc::SIGKILL) };
+        group.wait().unwrap();
+    }
+    let ended = end(&mut sweep("killed")).with_code(0);
+    assert!(ended.stdout.contains("6 points finished"), "{ended:#?}");
+    assert_eq!(table("killed"), table("peace"));
 }

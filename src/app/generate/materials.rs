@@ -34,7 +34,7 @@ One metal has several names, which differ in what they know:
 | `aluminium-6061` | constant yield stress (von Mises) | shocks far above the yield stress; a first run |
 | `aluminium-6061-johnson-cook` | yield stress of Johnson and Cook: strain, strain rate and temperature | rods, bars and plates that bend, bulge and heat |
 | `aluminium-6061-ductile` | the same, and it **fails** (Johnson and Cook, spall where it is known) | perforation, holes, debris |
-| `aluminium-6061-steinberg-guinan` | modulus and yield stress that grow with pressure | strain rates above some 10⁵/s |
+| `aluminium-6061-steinberg-guinan` | modulus and yield stress that grow with pressure | strain rates above some 10⁵/s, as under craters |
 | `aluminium-tillotson` | constant yield stress, an equation of state with vapour | impacts that vaporise material, above some 10 km/s |
 
 Of metals only the `-ductile` ones fail by themselves; rock, ice and ceramics do, and [keep friction](../theory/granular.md). Debris that never fails holds together as long as it can: add `failure.spall` or another
