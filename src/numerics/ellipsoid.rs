@@ -44,6 +44,12 @@ impl Ellipsoid {
         })))
     }
 
+    /// One so many times as large.
+    #[must_use]
+    pub fn scaled(&self, times: f64) -> Self {
+        Self(self.0.map(|part| part * (times * times)))
+    }
+
     /// How far it reaches from its middle along a coordinate axis (m).
     #[must_use]
     pub fn reach(&self, axis: usize) -> f64 {

@@ -78,14 +78,15 @@ impl Shape {
         })
     }
 
-    /// One that fills a place where half of what is around is matter, in a model of some dimensions: flat faces stay where they
-    /// are, whatever the layers of a lattice, and edges are rounded by a part of a size.
+    /// One of three dimensions that is as much matter as this one, spread so many times as wide, and that fills a place where half of what is
+    /// around is matter: flat faces stay where they are, whatever the layers of a lattice, and edges are rounded by a part of the
+    /// width.
     #[must_use]
-    pub fn averaged(&self, dimension: usize) -> Self {
+    pub fn averaged(&self, wider: f64) -> Self {
         Self {
-            around: around(dimension) * (AROUND / 0.5),
+            ellipsoid: self.ellipsoid.scaled(wider),
+            around: around(3) * (AROUND / 0.5) / (wider * wider * wider),
             own: 0.0,
-            ..*self
         }
     }
 
