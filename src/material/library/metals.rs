@@ -6,6 +6,10 @@
 use super::heat;
 use super::metal::{Metal, jc, sg, von_mises};
 
+const VERNEY: &str = "the imploding shell of Verney, as codes compute it; Kinslow (1970) has 1851 kg/m^3 and γ₀ = 1.16 with \
+     the same Hugoniot";
+const KINSLOW: &str =
+    "Kinslow (1970), High-Velocity Impact Phenomena, as a public table of Hugoniots quotes it";
 const UINTAH: &str = "Steinberg-Guinan constants in Uintah, citing Steinberg, UCRL-MA-106439";
 const STEINBERG: &str =
     "Steinberg, UCRL-MA-106439, as FronTier's table of equations of state quotes it";
@@ -110,6 +114,23 @@ records! {
             ("density", ASSUMED_7039),
             ("thermal.specific_heat", ASSUMED_7039),
             ("", JOHNSON_COOK),
+        ];
+    "beryllium", "beryllium, constant yield stress":
+        {
+            let metal = Metal {
+                density: 1845.0,
+                shear_modulus: 151e9,
+                hugoniot: [7998.0, 1.124, 1.11, 0.16],
+                curvature: [0.0; 2],
+            };
+            von_mises(&metal, 0.33e9, heat(1755.0, 300.0, Some(1560.0)))
+        },
+        &[
+            ("strength.von_mises.hardening_modulus", KEPT),
+            ("thermal.reference_temperature", ROOM),
+            ("thermal.melting_temperature", "melting point of the element"),
+            ("thermal", KINSLOW),
+            ("", VERNEY),
         ];
     "copper", "copper OFHC half-hard, constant yield stress":
         von_mises(&COPPER, 0.12e9, heat(383.0, 300.0, Some(1356.0))),
