@@ -1,7 +1,7 @@
 //! `whipple compare`: whether two results are the same to the last bit.
 
 mod content;
-mod tables;
+pub(super) mod tables;
 mod text;
 
 pub(super) use text::cases;

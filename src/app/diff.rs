@@ -1,9 +1,11 @@
 //! `whipple diff`: the first step, particle and field in which two runs differ.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::compare::tables::SINCE_ROW_BEFORE;
 use super::compare::{cases, compare};
 use super::replay::{Part, RankArgs};
 use super::results::ResultsError;
@@ -183,17 +185,35 @@ fn histories(runs: &[RunFolder; 2]) -> Result<Histories, OutputError> {
     let [a, b] = &sheets[..] else {
         unreachable!("two runs");
     };
-    let time = a.names.iter().position(|name| name == "time");
+    let place = |name: &str| a.names.iter().position(|own| own == name);
+    let (step, time) = (place("step"), place("time"));
     let time_of = |cells: &[String]| -> Option<f64> { cells.get(time?)?.parse().ok() };
+    let step_of = |cells: &[String]| -> Option<u64> { cells.get(step?)?.parse().ok() };
     let mut found = Histories {
         agree: Vec::new(),
         part: None,
     };
-    for ((_, mine), (_, theirs)) in a.rows.iter().zip(&b.rows) {
+    let is_of_step = |(name, _): &(&String, &String)| !SINCE_ROW_BEFORE.contains(&name.as_str());
+    let same = |mine: &[String], theirs: &[String]| {
+        let of = |cells: &[String]| -> Vec<String> {
+            let cells = a.names.iter().zip(cells).filter(is_of_step);
+            cells.map(|(_, cell)| cell.clone()).collect()
+        };
+        a.names == b.names && of(mine) == of(theirs)
+    };
+    // Rows of steps that only one of them has tell nothing.
+    let theirs: BTreeMap<Option<u64>, &Vec<String>> = (b.rows.iter())
+        .map(|(_, cells)| (step_of(cells), cells))
+        .collect();
+    let both = a.rows.iter().filter_map(|(_, mine)| {
+        let own = step_of(mine)?;
+        Some((mine, *theirs.get(&Some(own))?))
+    });
+    for (mine, theirs) in both {
         let (Some(one), Some(other)) = (time_of(mine), time_of(theirs)) else {
             break;
         };
-        if mine == theirs && a.names == b.names {
+        if same(mine, theirs) {
             found.agree.push(one);
         } else {
             found.part = Some([one, other]);

@@ -128,6 +128,16 @@ fn the_first_difference_is_found() {
         "{ended:#?}"
     );
 
+    // Rows of other steps tell nothing.
+    let rows = place.path().join("rows");
+    end(coarse_run(1, &rows).args(["--set", "output.history_every=7"])).with_code(0);
+    let mut other = command(WHIPPLE);
+    let ended = end(other.arg("diff").arg(&a).arg(&rows)).with_code(0);
+    assert!(
+        ended.stdout.contains("no row of the histories"),
+        "{ended:#?}"
+    );
+
     let ended = end(command(WHIPPLE).arg("diff").arg(&a).arg(&a)).with_code(0);
     assert!(
         ended.stdout.contains("no row of the histories"),

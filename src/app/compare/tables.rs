@@ -11,7 +11,7 @@ use files::output::Sheet;
 const OF_THE_PROCESS: [&str; 2] = ["performance.csv", "ranks.csv"];
 
 /// Columns with extremes since the row before.
-const SINCE_ROW_BEFORE: [&str; 7] = [
+pub const SINCE_ROW_BEFORE: [&str; 7] = [
     "interpenetrated",
     "peak_force",
     "largest_excess",
