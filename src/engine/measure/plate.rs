@@ -332,7 +332,9 @@ impl Shape {
             open: is_open,
             hole: width(rod),
             opening,
-            middle: if at_middle.count() < hole.count() || 2 * left_middle > at_middle.count() {
+            middle: if is_open
+                && (at_middle.count() < hole.count() || 2 * left_middle > at_middle.count())
+            {
                 f64::NAN
             } else {
                 width(at_middle.count())
