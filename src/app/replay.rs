@@ -56,7 +56,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "TIME", value_parser = parse_until)]
     to: Option<f64>,
 
-    /// Time between snapshots, as in 10ns; of the boxes alone where there are some
+    /// Time between snapshots, as in 10ns; with --watch those of the boxes
     #[arg(long, value_name = "TIME")]
     snapshot_every: Option<String>,
 

@@ -1,12 +1,13 @@
 //! Materials that treat matter alike as long as nothing has damaged it.
 //!
 //! A law of failure whose damage grows with plastic flow or crushed pores (`failure.johnson_cook` and others) uses its constants
-//! in no step that leaves damage at zero. A limit of tension uses its own when matter reaches it, and damages that matter in
-//! the same step: a limit that is farther away has had no effect either. What matter loses by damage, and how cracks take
-//! energy, comes later still.
+//! in no step that leaves damage at zero. A limit of tension at which matter fails at once uses its own when matter reaches it, and
+//! damages that matter in the same step: a larger limit has had no effect either. (Where matter softens, the limit of spall
+//! holds the pressure, also in steps that add no damage.) What matter loses by damage, and how cracks take energy, comes
+//! later still.
 
 use super::declare::Value;
-use super::{Constant, Material};
+use super::{Constant, Failure, Material};
 
 /// Laws whose numbers matter in steps alone that add damage.
 const BY_FLOW: [&str; 7] = [
@@ -31,9 +32,19 @@ impl Material {
         if same_law != *other {
             return Some(self.name.clone());
         }
+        // A law that follows the temperature lets what melts fail.
+        if self.failure.needs_temperature() != other.failure.needs_temperature() {
+            return Some("failure".to_owned());
+        }
         let (own, others) = (self.constants(), other.constants());
-        // Flaws are drawn before there is any load.
-        let has_flaws = self.failure.grady_kipp.is_some();
+        // Flaws are drawn before there is any load, and cracks along directions are no damage of this kind.
+        let Failure {
+            grady_kipp,
+            hashin,
+            uncoupled,
+            ..
+        } = &self.failure;
+        let others_act = grady_kipp.is_some() || hashin.is_some() || uncoupled.is_some();
         // What recompacts has been damaged and tells nothing of it.
         let forgets = own.iter().any(|constant| {
             constant.key == "failure.spall.after" && constant.value != Value::Word("failed")
@@ -48,14 +59,15 @@ impl Material {
         let mut keys = own.iter().chain(more).map(|constant| &constant.key);
         let felt = keys.find(|key| {
             let [now, then] = [&own, &others].map(|list| value(list, key));
-            now != then && (forgets || has_flaws || is_felt(key, now, then))
+            let softens = self.failure.options.softens();
+            now != then && (forgets || others_act || is_felt(key, now, then, softens))
         });
         felt.cloned()
     }
 }
 
 /// True if matter may feel another value of a constant before the present one has damaged it.
-fn is_felt(key: &str, now: Option<Value>, then: Option<Value>) -> bool {
+fn is_felt(key: &str, now: Option<Value>, then: Option<Value>, softens: bool) -> bool {
     if key == "failure.seed" {
         // That of no text is one.
         return false;
@@ -65,7 +77,7 @@ fn is_felt(key: &str, now: Option<Value>, then: Option<Value>) -> bool {
     };
     match key {
         // Tension is negative here.
-        "failure.spall.pressure" => to > from,
+        "failure.spall.pressure" => softens || to > from,
         "failure.principal_stress.limit" => to < from,
         "failure.fracture_energy" | "failure.scatter" => false,
         _ => !BY_FLOW.iter().any(|law| key.starts_with(law)),
@@ -78,8 +90,7 @@ mod tests {
     use crate::library::find;
 
     fn ductile(change: impl FnOnce(&mut Material)) -> Option<String> {
-        let mut own = find("aluminium-2024-ductile").unwrap();
-        own.failure.options.fracture_energy = 1e4;
+        let own = find("aluminium-2024-ductile").unwrap();
         let mut other = own.clone();
         change(&mut other);
         own.differs_undamaged(&other)
@@ -91,10 +102,7 @@ mod tests {
         let johnson_cook =
             |other: &mut Material| other.failure.johnson_cook.as_mut().unwrap().d1 += 0.1;
         assert_eq!(ductile(johnson_cook), None);
-        assert_eq!(
-            ductile(|other| other.failure.options.fracture_energy += 1.0),
-            None
-        );
+        assert_eq!(ductile(|other| other.failure.options.seed += 1), None);
         // A weaker limit may have been reached.
         for (factor, felt) in [
             (1.1, None),
@@ -109,7 +117,24 @@ mod tests {
     #[test]
     fn other_matter_and_other_laws_are_felt_at_once() {
         assert!(ductile(|other| other.reference_density += 1.0).is_some());
-        assert!(ductile(|other| other.failure.options.fracture_energy = 0.0).is_some());
+        assert!(ductile(|other| other.failure.options.fracture_energy = 1.0).is_some());
+        let melts = |other: &mut Material| other.failure.johnson_cook.as_mut().unwrap().d5 = 0.5;
+        let own = {
+            let mut own = find("aluminium-2024-ductile").unwrap();
+            own.failure.johnson_cook.as_mut().unwrap().d5 = 0.0;
+            own
+        };
+        let mut other = own.clone();
+        melts(&mut other);
+        assert!(own.differs_undamaged(&other).is_some());
+        // What softens at its limit is held there.
+        let mut soft = own.clone();
+        soft.failure.options.fracture_energy = 1e4;
+        let mut stronger = soft.clone();
+        stronger.failure.options.fracture_energy = 2e4;
+        assert_eq!(soft.differs_undamaged(&stronger), None);
+        stronger.failure.spall.as_mut().unwrap().pressure *= 1.1;
+        assert!(soft.differs_undamaged(&stronger).is_some());
         assert!(ductile(|other| other.failure.johnson_cook = None).is_some());
         assert!(ductile(|other| other.failure.spall = None).is_some());
     }

@@ -103,6 +103,44 @@ fn a_fork_is_its_own_whole_run() {
     assert_same(&at("strong"), &at("whole"));
     assert!(!at("soft/forked.json").exists());
 
+    // Another end cuts another step, and rows come at the same ones.
+    let ends = |end: &str, out: &str| {
+        let end_time = format!("run.end_time={end}");
+        let set = ["output.history_every=10", &often[0], &often[1], &end_time];
+        run(place.path(), out, &[&set[..], &[&strong]].concat());
+    };
+    ends("1us", "short");
+    ends("1.3us", "long");
+    let mut again = ranks(1);
+    again
+        .arg("fork")
+        .arg(at("short"))
+        .arg("--out")
+        .arg(at("longer"));
+    end(again.args(["--set", "run.end_time=1.3us"])).with_code(0);
+    assert_same(&at("longer"), &at("long"));
+
+    // A fork of a fork has the constants of both, and a run is not its own fork.
+    let mut again = ranks(1);
+    again
+        .arg("fork")
+        .arg(at("strong"))
+        .arg("--out")
+        .arg(at("again"));
+    end(again.args(["--set", "material.wall.failure.seed=2"])).with_code(0);
+    let text = std::fs::read_to_string(at("again/case.toml")).unwrap();
+    assert!(
+        text.contains("-1.7 GPa") && text.contains("d1 = 0.2"),
+        "{text}"
+    );
+    let mut same = ranks(1);
+    same.arg("fork")
+        .arg(at("soft"))
+        .args(["--force", "--set", &strong, "--out"]);
+    let ended = end(same.arg(at("soft"))).with_code(2);
+    assert!(ended.stderr.contains("a folder of its own"), "{ended:#?}");
+    assert!(at("soft/checkpoints").is_dir());
+
     for felt in [
         format!("{LIMIT}=-1 GPa"),
         "body.ball.velocity=2 km/s".to_owned(),

@@ -38,7 +38,7 @@ pub use shots::{Shot, shots};
 pub use values::Values;
 
 use files::input::InputError;
-use files::output::{OutputError, checkpoint, write_atomically};
+use files::output::{OutputError, write_atomically};
 use forks::{Beginning, Forks};
 use model::readable::printable;
 use plan::{Bisection, Known, Plan};
@@ -204,9 +204,14 @@ impl Sweep {
                 match self.launch.state(point) {
                     PointState::Open if running.len() < jobs => {
                         waits = true;
-                        let (keys, ends) = (&self.plan.keys, &self.ends);
-                        let beginning =
-                            (self.forks).beginning(&self.definition, keys, &points, at, ends)?;
+                        let (keys, launch) = (&self.plan.keys, &self.launch);
+                        let beginning = self.forks.beginning(
+                            &self.definition,
+                            keys,
+                            (&points, at),
+                            (&self.ends, &self.stopped),
+                            |point| launch.checkpoints(point),
+                        )?;
                         if beginning != Beginning::Later {
                             report(&format!("{}: runs", point.label(keys)));
                             running.push(self.launch.start(point, &beginning)?);
@@ -222,21 +227,24 @@ impl Sweep {
             changed |= self.collect(&points, &mut running, &mut report)?;
             if changed {
                 self.write()?;
+                self.forget_checkpoints(&points)?;
             } else if waits {
                 std::thread::sleep(PAUSE);
             } else {
                 self.write()?;
-                self.forget_checkpoints()?;
                 return self.tally();
             }
         }
     }
 
-    /// Removes the checkpoints that runs have kept for others.
-    fn forget_checkpoints(&self) -> Result<(), OutputError> {
-        for (point, kept) in &self.forks.trunks {
-            let run = self.launch.run_folder(point);
-            checkpoint::keep_newest(&run.checkpoints(), *kept)?;
+    /// Removes the checkpoints that runs have kept for others, where these are over.
+    fn forget_checkpoints(&self, points: &[Point]) -> Result<(), SweepError> {
+        let is_over = |point: &Point| self.is_over(point);
+        for (at, point) in points.iter().enumerate() {
+            let keys = &self.plan.keys;
+            if let Some(kept) = Forks::needed(&self.definition, keys, (points, at), is_over)? {
+                self.launch.keep_checkpoints(point, kept)?;
+            }
         }
         Ok(())
     }
@@ -253,7 +261,7 @@ impl Sweep {
                 continue;
             }
             shared.all += run.status()?.step;
-            if let Some(forked) = run.forked()? {
+            if let Ok(Some(forked)) = run.forked() {
                 shared.runs += 1;
                 shared.steps += forked.step;
             }

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 
 use super::forks::Beginning;
 use super::point::Point;
-use files::output::{OutputError, Phase, Presence, RunFolder, checkpoint};
+use files::output::{OutputError, Phase, Presence, RunFolder, RunLock, checkpoint};
 
 /// The way to start runs.
 #[derive(Debug, Clone)]
@@ -68,6 +68,24 @@ impl Launch {
                 PointState::Failed(status.reason.unwrap_or_default())
             }
             _ => PointState::Open,
+        }
+    }
+
+    /// How many checkpoints the run of a point has.
+    pub(super) fn checkpoints(&self, point: &Point) -> usize {
+        let all = self.run_folder(point).checkpoint_folders();
+        all.map_or(0, |all| all.len())
+    }
+
+    /// Removes all but so many newest checkpoints of a point's run, unless somebody holds it.
+    pub(super) fn keep_checkpoints(&self, point: &Point, kept: usize) -> Result<(), OutputError> {
+        if self.checkpoints(point) <= kept {
+            return Ok(());
+        }
+        let folder = self.run_folder(point);
+        match RunLock::take(folder.path(), false) {
+            Ok(_lock) => checkpoint::keep_newest(&folder.checkpoints(), kept),
+            Err(_) => Ok(()),
         }
     }
 

@@ -6,6 +6,7 @@ use toml::de::DeTable;
 use toml::{Table, Value};
 
 use super::overrides::{RESTARTABLE, modernise};
+use material::Material;
 use model::{Case, units};
 
 /// A key with other values in two cases.
@@ -35,31 +36,50 @@ pub fn differences(a: &str, b: &str) -> Option<Vec<Difference>> {
     Some(found)
 }
 
-/// The materials, by their numbers, that two cases have with other constants of failure, if nothing else in the cases differs but what
-/// a restart may change: matter that the first case has not damaged is the same, to the last bit, with the second.
-///
-/// # Errors
-/// The first key that matters before anything is damaged.
-pub fn apart_once_damaged(a: &Case, b: &Case) -> Result<Vec<usize>, String> {
-    let differences = differences(&a.resolved, &b.resolved).unwrap_or_default();
-    let of_material = |found: &Difference| found.key.split('.').next() == Some("material");
-    let mut others = differences.iter();
-    if let Some(found) = others.find(|found| !found.is_restartable() && !of_material(found)) {
-        return Err(found.key.clone());
-    }
-    if a.materials.len() != b.materials.len() {
-        return Err("material".to_owned());
-    }
-    let mut apart = Vec::new();
-    for (number, (a, b)) in a.materials.iter().zip(&b.materials).enumerate() {
-        if let Some(key) = a.differs_undamaged(b) {
-            return Err(format!("material.{}: {key}", a.name));
-        }
-        if a != b {
-            apart.push(number);
+/// What of a case tells how long it is the same as another one.
+#[derive(Debug)]
+pub struct Compared {
+    resolved: String,
+    materials: Vec<Material>,
+}
+
+impl Compared {
+    /// That of a case.
+    #[must_use]
+    pub fn of(case: &Case) -> Self {
+        Self {
+            resolved: case.resolved.clone(),
+            materials: case.materials.clone(),
         }
     }
-    Ok(apart)
+
+    /// The materials, by their numbers, that another case has with other constants of failure, if nothing else in the cases differs
+    /// but what a restart may change: matter that this case has not damaged is the same, to the last bit, with the other.
+    ///
+    /// # Errors
+    /// The first key that matters before anything is damaged.
+    pub fn apart_once_damaged(&self, other: &Self) -> Result<Vec<usize>, String> {
+        let differences = differences(&self.resolved, &other.resolved).unwrap_or_default();
+        let of_material = |found: &Difference| found.key.split('.').next() == Some("material");
+        let mut others = differences.iter();
+        if let Some(found) = others.find(|found| !found.is_restartable() && !of_material(found)) {
+            return Err(found.key.clone());
+        }
+        let [a, b] = [&self.materials, &other.materials];
+        if a.len() != b.len() {
+            return Err("material".to_owned());
+        }
+        let mut apart = Vec::new();
+        for (number, (a, b)) in a.iter().zip(b).enumerate() {
+            if let Some(key) = a.differs_undamaged(b) {
+                return Err(format!("material.{}: {key}", a.name));
+            }
+            if a != b {
+                apart.push(number);
+            }
+        }
+        Ok(apart)
+    }
 }
 
 /// The document of a text, with tables of older names under their present ones.

@@ -31,7 +31,7 @@ use model::{Case, SphOptions, units};
 use source::{Diagnostic, Sources};
 
 pub use case_file::text;
-pub use difference::{Difference, apart_once_damaged, differences};
+pub use difference::{Compared, Difference, differences};
 pub use explain::{Explained, explain};
 pub use keys::{keys, restartable_keys};
 pub use schema::describe::{ABSENT, referred};

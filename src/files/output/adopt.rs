@@ -1,7 +1,7 @@
 //! The folder of a run that begins with what another run had written up to a checkpoint.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use super::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Forked {
     /// The folder of the other run.
-    pub from: PathBuf,
+    pub from: String,
     /// Steps that were not computed again.
     pub step: u64,
     /// Their time (s).
@@ -38,8 +38,9 @@ impl RunFolder {
     }
 
     /// Fills this folder, which is held, with what another run had written up to a checkpoint of it, and with a resolved input of
-    /// its own. Files of an earlier run go. Files that no run changes are linked where the file system can. Until the
-    /// checkpoint's manifest is there, which comes last, the folder is a run without a checkpoint. Rank 0's alone.
+    /// its own; tells the results that are not there to be taken over. Files of an earlier run go. Files that no run changes get a
+    /// second name where the file system can do that. Until the checkpoint's manifest is there, which comes last, the folder is a run
+    /// without a checkpoint. Rank 0's alone.
     ///
     /// # Errors
     /// [`OutputError::Io`], [`OutputError::Damaged`].
@@ -48,8 +49,9 @@ impl RunFolder {
         other: &Self,
         checkpoint: &Path,
         resolved: &str,
-    ) -> Result<(), OutputError> {
+    ) -> Result<Vec<String>, OutputError> {
         let manifest = checkpoint::manifest(checkpoint)?;
+        let whole = (other.path.canonicalize()).map_err(OutputError::io("find", &other.path))?;
         self.clear()?;
         copy(&other.listing(), &self.listing())?;
         let own = Self {
@@ -59,28 +61,36 @@ impl RunFolder {
         let (step, time) = (manifest.step, manifest.time);
         own.write_status(&Status::new(Phase::Running, step, time))?;
         own.list(&self.forked_file())?;
-        let from = other.path.clone();
+        let from = whole.display().to_string();
         write_json(&self.forked_file(), &Forked { from, step, time })?;
         let name = checkpoint.file_name().unwrap_or_default();
         let into = self.checkpoints().join(name);
-        for folder in [&self.snapshots(), &self.checkpoints(), &into] {
+        for folder in [
+            &self.snapshots(),
+            &self.fragment_tables(),
+            &self.gauge_records(),
+            &self.checkpoints(),
+            &into,
+        ] {
             files::make_folder(folder)?;
         }
         write_atomically(&self.case(), resolved.as_bytes())?;
-        copy(&other.log(), &self.log())?;
+        let mut missing = Vec::new();
         for table in &manifest.results.tables {
-            if is_within(&table.name) {
-                let mut rows = read_regular(&other.path.join(&table.name))?;
-                rows.truncate(usize::try_from(table.bytes).unwrap_or(usize::MAX));
-                write_atomically(&self.path.join(&table.name), &rows)?;
-            }
+            let rows = Some(&table.name)
+                .filter(|name| is_within(name) && Path::new(name).parent() == Some(Path::new("")))
+                .and_then(|name| read_regular(&other.path.join(name)).ok());
+            let Some(mut rows) = rows else {
+                missing.push(table.name.clone());
+                continue;
+            };
+            rows.truncate(usize::try_from(table.bytes).unwrap_or(usize::MAX));
+            write_atomically(&self.path.join(&table.name), &rows)?;
         }
-        for name in manifest.results.files.iter().filter(|name| is_within(name)) {
-            let (from, to) = (other.path.join(name), self.path.join(name));
-            if let Some(folder) = to.parent() {
-                fs::create_dir_all(folder).map_err(OutputError::io("create the folder", folder))?;
+        for name in &manifest.results.files {
+            if !self.take_over(&whole, name)? {
+                missing.push(name.clone());
             }
-            link(&from, &to)?;
         }
         for schedule in other.all_schedules()? {
             let schedule = schedule.as_deref();
@@ -91,7 +101,37 @@ impl RunFolder {
         }
         link(&checkpoint.join(STATE), &into.join(STATE))?;
         copy(&checkpoint.join(MANIFEST), &into.join(MANIFEST))?;
-        files::sync_folder(&into)
+        for empty in [self.fragment_tables(), self.gauge_records()] {
+            // With something in it, it stays.
+            let _ = fs::remove_dir(empty);
+        }
+        files::sync_folder(&into)?;
+        Ok(missing)
+    }
+
+    /// Takes a file of results of another run over, which is at a whole path; false if it is not there, or lies elsewhere.
+    fn take_over(&self, other: &Path, name: &str) -> Result<bool, OutputError> {
+        let to = self.path.join(name);
+        let folders = [
+            self.snapshots(),
+            self.fragment_tables(),
+            self.gauge_records(),
+        ];
+        let is_result = folders.iter().any(|folder| to.starts_with(folder));
+        let from = other.join(name).canonicalize();
+        let Some(from) = from.ok().filter(|from| {
+            is_within(name) && is_result && from.starts_with(other) && from.is_file()
+        }) else {
+            return Ok(false);
+        };
+        if let Some(folder) = to.parent() {
+            // Of a schedule.
+            files::make_folder(folder)?;
+        }
+        if !to.exists() {
+            link(&from, &to)?;
+        }
+        Ok(true)
     }
 }
 
@@ -100,13 +140,13 @@ fn copy(from: &Path, to: &Path) -> Result<(), OutputError> {
     write_atomically(to, &read_regular(from)?)
 }
 
-/// Gives a file a second name, or copies it where there are no links.
+/// Gives a file a second name, which is free, or copies it where there are none.
 fn link(from: &Path, to: &Path) -> Result<(), OutputError> {
-    // A link of the other folder would lead elsewhere.
-    files::length_of_regular("link", from)?;
     if fs::hard_link(from, to).is_ok() {
         return Ok(());
     }
-    fs::copy(from, to).map_err(OutputError::io("copy", from))?;
-    files::sync_file(to)
+    let temporary = files::partial(to);
+    fs::copy(from, &temporary).map_err(OutputError::io("copy", from))?;
+    files::sync_file(&temporary)?;
+    files::publish(&temporary, to)
 }

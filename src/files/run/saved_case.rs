@@ -60,7 +60,13 @@ pub fn resolve(
     let taken = parse(&name, &edited)?;
     let differences = input::differences(saved, &edited).unwrap_or_default();
     if !accept || !differences.iter().all(Difference::is_restartable) {
-        return Err(refusal(&name, source, &differences));
+        let mut message = refusal(&name, source, &differences);
+        if from_root(comm, || folder.forked()).is_ok_and(|forked| forked.is_some()) {
+            message.push_str(
+                "\n  help: this fork has no checkpoint of its own that can be read: fork again with --force",
+            );
+        }
+        return Err(message);
     }
     let change = |found: &Difference| format!("{name} is taken: {}", describe(found, "before"));
     Ok(ResolvedCase {
