@@ -216,6 +216,13 @@ impl RunFolder {
             series::keep(&series, |entry| {
                 entry.time <= time && !(is_of_stop(step) && entry.name == of_stop)
             })?;
+            // One that a kill left unfinished, of a step that may write none now.
+            let unfinished = format!("{SNAPSHOT_ENDING}{}", files::PARTIAL);
+            for path in names_in(&self.snapshots_of(schedule.as_deref()))? {
+                if step_of(&path, &unfinished).is_some() {
+                    aside.take(&path)?;
+                }
+            }
             for path in self.snapshot_files_of(schedule.as_deref())? {
                 if step_of(&path, SNAPSHOT_ENDING)
                     .is_some_and(|other| other > step || is_of_stop(other))
