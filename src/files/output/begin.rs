@@ -216,10 +216,11 @@ impl RunFolder {
             series::keep(&series, |entry| {
                 entry.time <= time && !(is_of_stop(step) && entry.name == of_stop)
             })?;
-            // One that a kill left unfinished, of a step that may write none now.
-            let unfinished = format!("{SNAPSHOT_ENDING}{}", files::PARTIAL);
+            // What a kill left unfinished, of a step that may write no snapshot now.
             for path in names_in(&self.snapshots_of(schedule.as_deref()))? {
-                if step_of(&path, &unfinished).is_some() {
+                let name = path.to_string_lossy();
+                let whole = name.trim_end_matches(files::PARTIAL);
+                if whole != name && step_of(Path::new(whole), SNAPSHOT_ENDING).is_some() {
                     aside.take(&path)?;
                 }
             }
