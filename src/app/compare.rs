@@ -136,7 +136,7 @@ pub fn compare(a: &Path, b: &Path) -> Result<Report, ResultsError> {
         }
         (Results::Checkpoint(a), Results::Checkpoint(b)) => {
             case(&a.text("/input")?, &b.text("/input")?, &mut report);
-            content::checkpoints(&a, &b, "particles", &mut report)?;
+            content::checkpoints(&a, &b, "particles", true, &mut report)?;
         }
         (one, other) => {
             return Err(ResultsError::Kinds {
@@ -219,7 +219,7 @@ pub(super) fn tables_and_states(
             Content::open(&checkpoint::state_file(&folder.checkpoints().join(&name)))
         };
         let what = format!("checkpoint {name}");
-        content::checkpoints(&open(a)?, &open(b)?, &what, report)?;
+        content::checkpoints(&open(a)?, &open(b)?, &what, rows_are_same, report)?;
     }
     Ok(())
 }

@@ -370,7 +370,8 @@ impl Part<'_> {
     fn compared(&self) -> Result<Report, ResultsError> {
         let mut report = Report::default();
         // Other rows have extremes of other times.
-        let more_rows = |key: &String| key.starts_with("output.history_every");
+        let more_rows =
+            |key: &String| key.starts_with("output.history_every") || key.starts_with("measure");
         let (run, out) = (RunFolder::at(self.run), RunFolder::at(self.out));
         let rows_are_same = !self.set.iter().any(more_rows);
         tables_and_states(&run, &out, rows_are_same, &mut report)?;

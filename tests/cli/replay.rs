@@ -65,7 +65,13 @@ fn the_first_step_of_a_condition_is_found() {
     let place = tempfile::tempdir().unwrap();
     let [run, each, out] = ["run", "each", "out"].map(|name| place.path().join(name));
     let rows = |every: &str| format!("output.history_every={every}");
-    end(coarse_run(1, &run).args(["--set", &rows("20")])).with_code(0);
+    // Checkpoints within the part hold extremes over the run's rows.
+    let often = [
+        "output.checkpoint_every_steps=5",
+        "output.checkpoints_kept=100",
+    ];
+    let often = often.iter().flat_map(|set| ["--set", *set]);
+    end(coarse_run(1, &run).args(["--set", &rows("20")]).args(often)).with_code(0);
     end(coarse_run(2, &each).args(["--set", &rows("1")])).with_code(0);
     let text = std::fs::read_to_string(each.join("history.csv")).unwrap();
     let cells = |line: &str, k: usize| line.split(',').nth(k).unwrap().parse::<f64>().unwrap();
