@@ -48,7 +48,7 @@ Aluminium sphere at 7 km/s on an aluminium plate (3-D)
   plate                  2828 particles of aluminium, spacing 0.05 mm, h 0.065 mm, 9.843e-7 kg (each 0.02 % less than its cell)
   sphere                  228 particles of aluminium, spacing 0.05 mm, h 0.065 mm, 7.8744e-8 kg (each 0.79 % less than its cell)
                    begins with velocity [0, 0, -7] km/s
-  all                    3056 particles, about 47 MB a rank on 1 rank
+  all                    3056 particles, about 50 MB a rank on 1 rank
   measures: plate, plate-debris
   about 63 steps to 0.2 us
   about 0.2 s on 1 rank of one core of an ordinary cluster (`whipple plan` tells more)
