@@ -106,7 +106,7 @@ fn a_fork_is_its_own_whole_run() {
     // Another end cuts another step, and rows come at the same ones.
     let ends = |end: &str, out: &str| {
         let end_time = format!("run.end_time={end}");
-        let set = ["output.history_every=10", &often[0], &often[1], &end_time];
+        let set = ["output.history_every=10", often[0], often[1], &end_time];
         run(place.path(), out, &[&set[..], &[&strong]].concat());
     };
     ends("1us", "short");
