@@ -49,6 +49,7 @@ q  | inputs/bar-impact | run.max_steps=150
    | inputs/contact-lab/seam.toml | run.max_steps=80
    | inputs/contact-lab/solid.toml | run.max_steps=40
    | inputs/contact-lab/seam-solid.toml | run.max_steps=40
+   | inputs/ceramic-tile | spacing=1mm body.tile.spacing.inner=1mm body.back.spacing.inner=1mm run.max_steps=120
    | inputs/crater | spacing=0.8mm body.target.spacing.inner=0.8mm run.max_steps=60
 q  | inputs/dam-break | spacing=0.73cm run.max_steps=150
 q  | inputs/elastic-impact | spacing=0.12mm run.max_steps=60
@@ -62,6 +63,7 @@ r  | inputs/hertz-cylinder | spacing=0.6mm
 q  | inputs/quarter-impact | spacing=0.05mm
    | inputs/ricochet | spacing=1mm run.max_steps=120
    | inputs/rubber-rings | spacing=2mm
+   | inputs/sand-crater | run.max_steps=300
    | inputs/sliding-block | run.max_steps=30
    | inputs/sod |
    | inputs/stuffed-shield | spacing=0.4mm body.bumper.spacing.inner=0.4mm run.max_steps=60

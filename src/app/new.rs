@@ -43,6 +43,8 @@ enum Kind {
     Stuffed,
     /// A sphere on a panel of honeycomb between sheets of carbon fibres
     Honeycomb,
+    /// A rod on a tile of ceramic and what is behind it
+    Tile,
     /// A sphere on a thick target, which absorbing zones let go on for ever
     Crater,
     /// A sphere through a thin plate: how large a hole it makes
@@ -74,6 +76,7 @@ impl Kind {
             Self::Shield => ready!("whipple-shield"),
             Self::Stuffed => ready!("stuffed-shield"),
             Self::Honeycomb => ready!("honeycomb-panel"),
+            Self::Tile => ready!("ceramic-tile"),
             Self::Crater => ready!("crater"),
             Self::Plate => ready!("bumper-hole"),
             Self::Oblique => ready!("oblique-30"),

@@ -15,6 +15,7 @@ const KINDS: [&str; 12] = [
     "shield",
     "stuffed",
     "honeycomb",
+    "tile",
     "crater",
     "plate",
     "oblique",
