@@ -11,7 +11,7 @@ fn whipple(arguments: &[&str]) -> Ended {
     end(command(WHIPPLE).args(arguments))
 }
 
-const KINDS: [&str; 12] = [
+const KINDS: [&str; 13] = [
     "shield",
     "stuffed",
     "honeycomb",

@@ -1044,6 +1044,31 @@ fn a_graded_plate() {
     assert_same_in_legs(&graded, &[2, 3], &["0.1us"], &one, &stopped);
 }
 
+/// Contact takes sizes of classes, which may be larger than a particle of a graded body is: halos reach as far, so that foreign
+/// fractions have the same bits.
+#[test]
+fn graded_bodies_that_lie_on_each_other() {
+    let (_keep, at) = folder();
+    let case = [
+        "inputs/ceramic-tile",
+        "--set",
+        "spacing=1mm",
+        "--set",
+        "body.tile.spacing.inner=1mm",
+        "--set",
+        "body.back.spacing.inner=1mm",
+        "--set",
+        "run.max_steps=1",
+    ];
+    let one = at("one");
+    run(1, 2, &case, &[], &one);
+    for ranks in [2, 3] {
+        let other = at(&format!("{ranks}"));
+        run(ranks, 1, &case, &[], &other);
+        assert_same(&one, &other, &format!("{ranks} ranks"));
+    }
+}
+
 /// Slabs of slabs of any levels and axes, balanced or not.
 #[test]
 fn slabs_of_slabs_on_any_ranks() {

@@ -8,6 +8,7 @@ use super::nested::Slab;
 use comm::Comm;
 use model::Case;
 use numerics::kernel::SUPPORT;
+use particles::neighbours::SizeClasses;
 use populate::{self, Share};
 
 /// Spread of the sites of each body along each axis. Where a body's sites along one axis hang on
@@ -196,7 +197,8 @@ impl Forecast {
 /// Upper bound of half of the sum of two supports (m): the reach across a face.
 pub fn reach(case: &Case) -> f64 {
     let bodies = case.bodies.iter();
-    let reach = bodies.map(|body| SUPPORT * body.longest_smoothing_length());
+    let reach =
+        bodies.map(|body| SUPPORT * body.longest_smoothing_length() * SizeClasses::widening(body));
     reach.fold(0.0, f64::max)
 }
 

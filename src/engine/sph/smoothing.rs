@@ -2,6 +2,7 @@
 
 use model::{Body, Case, Sizes, SmoothingLength};
 use particles::ParticleStore;
+use particles::neighbours::SizeClasses;
 
 /// Rule of smoothing lengths by densities (physics page, section 1).
 #[derive(Debug, Clone)]
@@ -13,8 +14,9 @@ pub struct Smoothing {
     /// 1/ρ of each body at the start (m³/kg).
     inverse_density: Vec<f64>,
     sizes: Sizes,
-    /// By body: factor of the reach of its particles.
+    /// By body: factor of the reach of its particles, and the least one, of contact.
     stretch: Vec<f64>,
+    widening: Vec<f64>,
     /// The longest length at the start (m).
     longest: f64,
 }
@@ -30,7 +32,8 @@ impl Smoothing {
             reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             inverse_density: case.bodies.iter().map(inverse_density).collect(),
             sizes: Sizes::new(case),
-            stretch: vec![1.0; case.bodies.len()],
+            stretch: case.bodies.iter().map(SizeClasses::widening).collect(),
+            widening: case.bodies.iter().map(SizeClasses::widening).collect(),
             longest: case
                 .bodies
                 .iter()
@@ -80,7 +83,7 @@ impl Smoothing {
 
     /// Sets how much farther the particles of a body reach than by their lengths.
     pub fn set_stretch(&mut self, body: usize, factor: f64) {
-        self.stretch[body] = factor;
+        self.stretch[body] = factor.max(self.widening[body]);
     }
 
     /// The length (m) of a particle of `body` with a mass (kg) at the start.

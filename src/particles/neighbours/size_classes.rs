@@ -94,6 +94,16 @@ impl SizeClasses {
         }
     }
 
+    /// How many times as large a particle of a body may count in contact as it is: that takes sizes of classes.
+    #[must_use]
+    pub fn widening(body: &Body) -> f64 {
+        match body.lattice.sizes {
+            None => 1.0,
+            // And rounding.
+            Some(_) => (1.0 + 1e-9) * step(body).sqrt(),
+        }
+    }
+
     /// Number of classes.
     #[must_use]
     pub fn count(&self) -> usize {
