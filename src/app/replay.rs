@@ -296,11 +296,15 @@ impl Part<'_> {
             return begin(self.set, self.to);
         }
         match begin(&[], Some(self.from)) {
-            0 if self.to.is_none_or(|to| to > self.from) => {
-                self.go_on(launch, self.out.as_os_str(), false, self.set, self.to)
-            }
+            0 if self.to.is_none_or(|to| to > self.from) => self.further(launch, self.to),
             code => code,
         }
+    }
+
+    /// Goes on in the folder of the results, to a time (s) or to the end of the case, with changed keys. Returns the exit code.
+    /// Collective.
+    pub fn further(&self, launch: &Launch, to: Option<f64>) -> u8 {
+        self.go_on(launch, self.out.as_os_str(), false, self.set, to)
     }
 
     /// The newest checkpoint that is no later than the beginning.

@@ -49,6 +49,9 @@ pub struct WhenArgs {
     ranks: RankArgs,
 }
 
+/// Legs in which the part is computed where the condition begins to hold.
+const LEGS: u32 = 8;
+
 /// Where a condition begins to hold.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 enum Begins {
@@ -119,15 +122,28 @@ fn find(launch: &Launch, args: &WhenArgs, condition: &Condition) -> Result<u8, O
         ranks: &args.ranks,
         force: args.force,
     };
-    let code = part.compute(launch);
-    if code != 0 {
-        return Ok(code);
+    // In legs, the last of which is that in which it begins to hold.
+    let mut found = None;
+    for leg in 1..=LEGS {
+        let to = Some(before + (after - before) * f64::from(leg) / f64::from(LEGS));
+        let to = if leg == LEGS { Some(after) } else { to };
+        let code = match leg {
+            1 => Part { to, ..part }.compute(launch),
+            _ => part.further(launch, to),
+        };
+        if code != 0 {
+            return Ok(code);
+        }
+        if let Begins::Between(times) = from_root(comm, || begins(&out, condition))? {
+            found = Some(times);
+            break;
+        }
     }
     let code = part.verify(comm);
     if code != 0 {
         return Ok(code);
     }
-    let Begins::Between([last, first]) = from_root(comm, || begins(&out, condition))? else {
+    let Some([last, first]) = found else {
         tell(&format!(
             "`{text}` holds at no step between {} and {}, but for the row of the run: a table that has no row at each \
              step tells it",
