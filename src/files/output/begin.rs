@@ -216,12 +216,14 @@ impl RunFolder {
             series::keep(&series, |entry| {
                 entry.time <= time && !(is_of_stop(step) && entry.name == of_stop)
             })?;
-            // What a kill left unfinished, of a step that may write no snapshot now.
+            // What a kill left unfinished, of a step that may write no snapshot now: parts, and what kept room for them.
             for path in names_in(&self.snapshots_of(schedule.as_deref()))? {
-                let name = path.to_string_lossy();
-                let whole = name.trim_end_matches(files::PARTIAL);
-                if whole != name && step_of(Path::new(whole), SNAPSHOT_ENDING).is_some() {
-                    aside.take(&path)?;
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                let whole = name.split_once(files::PARTIAL).map(|(whole, _)| whole);
+                let is_part =
+                    whole.is_some_and(|name| step_of(Path::new(name), SNAPSHOT_ENDING).is_some());
+                if is_part && path.is_file() {
+                    fs::remove_file(&path).map_err(OutputError::io("remove", &path))?;
                 }
             }
             for path in self.snapshot_files_of(schedule.as_deref())? {
