@@ -191,6 +191,16 @@ fn kill_at_each(
     eprintln!("{name}: {tried:?} of {} kill points", order.len());
 }
 
+/// All that is below a folder.
+fn below(folder: &Path) -> Vec<PathBuf> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        all.push(entry.path());
+        all.extend(below(&entry.path()));
+    }
+    all
+}
+
 fn kill_points(time: Option<Duration>) {
     let place = Place::new();
     let time = time.map(|time| time / 4);
@@ -201,7 +211,12 @@ fn kill_points(time: Option<Duration>) {
         assert_eq!(ended.code, Some(0), "{point}: {ended:#?}");
         assert_same(run, &reference);
         assert_eq!(snapshots(run), snapshots(&reference), "{point}");
-        assert!(!run.join("lock").exists() && !run.join("set-aside").exists());
+        let aside = run.join("set-aside");
+        assert!(
+            !run.join("lock").exists() && !aside.exists(),
+            "{point}: {:?}",
+            below(&aside)
+        );
     };
     let begins_anew = |run: &Path, point: &str| {
         let ended = end(&mut restart(run)).with_code(2);

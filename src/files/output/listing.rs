@@ -116,7 +116,10 @@ impl RunFolder {
         };
         let listed = self.listed()?;
         self.remove_listed(&folder, &listed, &mut Vec::new())?;
-        // With something else in it, it stays.
+        // That of a restart which was killed before it had set anything aside, too. With something else in it, it stays.
+        for of_restart in names_in(&folder)? {
+            let _ = fs::remove_dir(of_restart);
+        }
         let _ = fs::remove_dir(folder);
         Ok(())
     }
