@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::replay::RankArgs;
+use super::replay::{RankArgs, default_folder};
 use super::{restart, run};
 use comm::Comm;
 use files::input;
@@ -90,7 +90,7 @@ fn go(launch: &Launch, args: &ForkArgs) -> Result<u8, String> {
     let out = args
         .out
         .clone()
-        .unwrap_or_else(|| default_folder(&args.run));
+        .unwrap_or_else(|| default_folder("runs", &args.run, "-fork"));
     let canonical = |path: &Path| path.canonicalize().ok();
     let is_own = from_root(comm, || {
         let run = canonical(&args.run);
@@ -163,12 +163,6 @@ fn go(launch: &Launch, args: &ForkArgs) -> Result<u8, String> {
         force: false,
     };
     Ok(restart::with_any_keys(launch, &again))
-}
-
-/// `runs/`, the name of a run's folder, and `-fork`.
-fn default_folder(run: &Path) -> PathBuf {
-    let replays = super::replay::default_folder(run, "-fork");
-    Path::new("runs").join(replays.file_name().unwrap_or_default())
 }
 
 /// The checkpoints that a run has written itself, newest first, and the text of its case.

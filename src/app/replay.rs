@@ -149,7 +149,7 @@ pub fn run(args: &ReplayArgs) -> u8 {
             run: &args.run,
             from: args.from.unwrap_or(0.0),
             to: args.to,
-            out: &out.unwrap_or_else(|| default_folder(&args.run, "")),
+            out: &out.unwrap_or_else(|| default_folder("replays", &args.run, "")),
             set: &set,
             ranks: &args.ranks,
             force: args.force,
@@ -180,12 +180,12 @@ fn tell_why(comm: &Comm, ids: &[u64], out: &Path) -> u8 {
     }
 }
 
-/// `replays/`, the name of a run's folder, and an ending.
-pub(super) fn default_folder(run: &Path, ending: &str) -> PathBuf {
+/// A folder, and in it the name of a run's folder with an ending.
+pub(super) fn default_folder(parent: &str, run: &Path, ending: &str) -> PathBuf {
     let whole = run.canonicalize().unwrap_or_else(|_| run.to_owned());
     let mut name = whole.file_name().unwrap_or_default().to_owned();
     name.push(ending);
-    Path::new("replays").join(name)
+    Path::new(parent).join(name)
 }
 
 /// The keys that the options change. Collective.

@@ -107,7 +107,7 @@ fn find(launch: &Launch, args: &WhenArgs, condition: &Condition) -> Result<u8, O
         }
     };
     let out = args.out.clone();
-    let out = out.unwrap_or_else(|| default_folder(&args.run, "-when"));
+    let out = out.unwrap_or_else(|| default_folder("replays", &args.run, "-when"));
     let each_step = [
         "output.history_every=1".to_owned(),
         // Due at each step.

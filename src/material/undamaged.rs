@@ -56,10 +56,10 @@ impl Material {
         let more = others
             .iter()
             .filter(|other| value(&own, &other.key).is_none());
+        let softens = self.failure.options.softens();
         let mut keys = own.iter().chain(more).map(|constant| &constant.key);
         let felt = keys.find(|key| {
             let [now, then] = [&own, &others].map(|list| value(list, key));
-            let softens = self.failure.options.softens();
             now != then && (forgets || others_act || is_felt(key, now, then, softens))
         });
         felt.cloned()

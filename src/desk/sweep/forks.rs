@@ -1,7 +1,7 @@
 //! Points that differ in constants of failure alone share the beginning of their runs: one of them runs from its start, with
 //! checkpoints, and the others go on from where its matter is damaged.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::definition::Definition;
 use super::point::Point;
@@ -36,6 +36,8 @@ pub(super) struct Forks {
     known: BTreeMap<[String; 2], bool>,
     /// By the name of a point: its case.
     cases: BTreeMap<String, Compared>,
+    /// Names of points of which [`Self::needed`] has told.
+    settled: BTreeSet<String>,
 }
 
 impl Forks {
@@ -76,6 +78,10 @@ impl Forks {
         if !begins {
             return Ok(Beginning::Start(Vec::new()));
         }
+        // Asked again and again, as long as it waits.
+        if waits && donor.is_none() {
+            return Ok(Beginning::Later);
+        }
         let case = definition.case_of(own)?;
         match donor {
             Some((count, donor)) if count > case.output.checkpoints_kept.min(FEW) => {
@@ -89,13 +95,18 @@ impl Forks {
         }
     }
 
-    /// How many checkpoints the run of the point of a number needs to keep now, if it has begun for others and they are all over.
+    /// How many checkpoints the run of the point of a number needs to keep from now on, once it and those that may go on from it
+    /// are over; told once.
     pub fn needed(
+        &mut self,
         definition: &Definition,
         keys: &[String],
         (points, at): (&[Point], usize),
         is_over: impl Fn(&Point) -> bool,
     ) -> Result<Option<usize>, SweepError> {
+        if self.settled.contains(&points[at].name) {
+            return Ok(None);
+        }
         let mut kin = kin(keys, points, at).peekable();
         if kin.peek().is_none() || !is_over(&points[at]) || !kin.all(|k| is_over(&points[k])) {
             return Ok(None);

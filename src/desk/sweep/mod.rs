@@ -238,11 +238,12 @@ impl Sweep {
     }
 
     /// Removes the checkpoints that runs have kept for others, where these are over.
-    fn forget_checkpoints(&self, points: &[Point]) -> Result<(), SweepError> {
-        let is_over = |point: &Point| self.is_over(point);
+    fn forget_checkpoints(&mut self, points: &[Point]) -> Result<(), SweepError> {
+        let (ends, stopped) = (&self.ends, &self.stopped);
+        let is_over = |point: &Point| is_over(ends, stopped, point);
         for (at, point) in points.iter().enumerate() {
-            let keys = &self.plan.keys;
-            if let Some(kept) = Forks::needed(&self.definition, keys, (points, at), is_over)? {
+            let (definition, keys) = (&self.definition, &self.plan.keys);
+            if let Some(kept) = (self.forks).needed(definition, keys, (points, at), is_over)? {
                 self.launch.keep_checkpoints(point, kept)?;
             }
         }
@@ -296,7 +297,7 @@ impl Sweep {
     }
 
     fn is_over(&self, point: &Point) -> bool {
-        self.ends.contains_key(&point.name) || self.stopped.contains(&point.name)
+        is_over(&self.ends, &self.stopped, point)
     }
 
     /// Takes in a point whose folder says that its run has ended.
@@ -430,4 +431,9 @@ impl Sweep {
         }
         Ok(tally)
     }
+}
+
+/// True if the run of a point has ended, or was stopped.
+fn is_over(ends: &BTreeMap<String, Ended>, stopped: &[String], point: &Point) -> bool {
+    ends.contains_key(&point.name) || stopped.contains(&point.name)
 }

@@ -26,14 +26,15 @@ impl Smoothing {
     #[must_use]
     pub fn new(case: &Case) -> Self {
         let inverse_density = |body| 1.0 / case.initial_density(body);
+        let widening: Vec<f64> = case.bodies.iter().map(SizeClasses::widening).collect();
         Self {
             rule: case.sph.smoothing_length,
             dimension: case.extent(),
             reference: case.bodies.iter().map(|b| b.smoothing_length).collect(),
             inverse_density: case.bodies.iter().map(inverse_density).collect(),
             sizes: Sizes::new(case),
-            stretch: case.bodies.iter().map(SizeClasses::widening).collect(),
-            widening: case.bodies.iter().map(SizeClasses::widening).collect(),
+            stretch: widening.clone(),
+            widening,
             longest: case
                 .bodies
                 .iter()

@@ -116,11 +116,7 @@ impl RunFolder {
         };
         let listed = self.listed()?;
         self.remove_listed(&folder, &listed, &mut Vec::new())?;
-        // That of a restart which was killed before it had set anything aside, too. With something else in it, it stays.
-        for of_restart in names_in(&folder)? {
-            let _ = fs::remove_dir(of_restart);
-        }
-        let _ = fs::remove_dir(folder);
+        remove_if_empty(&folder);
         Ok(())
     }
 
@@ -186,4 +182,15 @@ impl RunFolder {
             })
             .collect()
     }
+}
+
+/// Removes a folder of the program's own with those in it that are empty, as a killed restart leaves them. With something else in it,
+/// it stays. Follows no links.
+fn remove_if_empty(folder: &Path) {
+    for path in names_in(folder).unwrap_or_default() {
+        if fs::symlink_metadata(&path).is_ok_and(|meta| meta.is_dir()) {
+            remove_if_empty(&path);
+        }
+    }
+    let _ = fs::remove_dir(folder);
 }
