@@ -5,10 +5,12 @@
 
 use serde::Deserialize;
 
+mod joint;
 mod overlap;
 mod penalty;
 mod potential;
 
+pub use joint::Joint;
 pub use overlap::Overlap;
 pub use penalty::{Penalty, PenaltyLaw};
 pub use potential::{Potential, PotentialRange};
@@ -33,6 +35,8 @@ pub struct ContactPair {
     pub bodies: [usize; 2],
     /// The contact where they meet.
     pub mode: ContactMode,
+    /// What holds them together, if anything does.
+    pub joint: Option<Joint>,
 }
 
 /// The properties of every mode with forces.

@@ -129,10 +129,20 @@ impl Case {
     /// Contact mode between bodies `a` and `b` (order does not matter).
     #[must_use]
     pub fn contact_between(&self, a: usize, b: usize) -> &ContactMode {
-        self.contacts
-            .iter()
-            .find(|pair| (pair.bodies == [a, b]) || (pair.bodies == [b, a]))
+        self.pair(a, b)
             .map_or(&self.default_contact, |pair| &pair.mode)
+    }
+
+    /// What holds bodies `a` and `b` together (order does not matter), if anything does.
+    #[must_use]
+    pub fn joint_between(&self, a: usize, b: usize) -> Option<&Joint> {
+        self.pair(a, b)?.joint.as_ref()
+    }
+
+    /// The contact that bodies `a` and `b` have of their own.
+    fn pair(&self, a: usize, b: usize) -> Option<&ContactPair> {
+        let mut pairs = self.contacts.iter();
+        pairs.find(|pair| (pair.bodies == [a, b]) || (pair.bodies == [b, a]))
     }
 
     /// Names of what acts from outside, in the order of its ledgers: prescribed velocities, rigid

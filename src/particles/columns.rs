@@ -200,6 +200,8 @@ macro_rules! owners {
                 const CRACKS = 1 << 33;
                 /// Rigid bodies that forces move.
                 const FREE_RIGID = 1 << 34;
+                /// Joints between bodies.
+                const JOINTS = 1 << 35;
                 $(
                     #[doc = concat!("The pair term `", stringify!($key), "`.")]
                     const $term = 1 << (FIRST_TERM + Term::$key as usize);

@@ -87,6 +87,7 @@ impl FieldInfo {
                     .union(Owner::FRICTION)
                     .union(Owner::PENALTY)
                     .union(Owner::GAS_CONTACT)
+                    .union(Owner::JOINTS)
                     .contains(self.owner)
                     && !self.owner.is_empty(),
             "the contact message is sent only where there is contact"
@@ -192,6 +193,8 @@ particle_fields! {
     touch_relief: Scalar,                 "",       State,    -,              OnDemand, CONTACT;
     /// How long the foreign fraction with current volumes has stayed above one half.
     enclosed_time: Scalar,                "s",      State,    -,              OnDemand, CONTACT;
+    /// Share of the joint to other bodies that has come apart.
+    joint_damage: Scalar,                 "",       State,    CONTACT,        IfHeld,   JOINTS;
     /// Elastic tangential displacement against the other bodies, by which friction holds.
     slip: Vector,                         "m",      State,    -,              OnDemand, FRICTION;
     /// Tangential velocity against the other bodies.
@@ -209,7 +212,7 @@ particle_fields! {
     /// Symmetry planes that the part reaches across: a set of bits.
     part_planes: Index,                   "",       State,    MOTION,            Never,    SELF_CONTACT;
     /// Position at the start.
-    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL | FREE_RIGID;
+    reference_position: Vector as Place,  "m",      State,    MOTION,         Never,    FOLDS | TOTAL | FREE_RIGID | JOINTS;
     /// Which loads and rigid bodies move it: a set of bits, in the input's order.
     load: Index,                          "",       State,    -,              OnDemand, LOADS;
     /// Rate at which an absorbing zone slows it down and relaxes its stress; zero outside of zones.
@@ -269,6 +272,8 @@ particle_fields! {
     boundary_normal: Vector,              "",       Scratch,  CONTACT,        OnDemand, PENALTY;
     /// Factor of the stiffness of contact, which follows the pressure of a gas; one of other matter.
     contact_stiffening: Scalar,           "",       Scratch,  CONTACT,        OnDemand, GAS_CONTACT;
+    /// Share of the joint that came apart in the last step.
+    joint_growth: Scalar,                 "",       Scratch,  CONTACT,        Never,    JOINTS;
     /// Contact energy.
     contact_energy: Scalar,               "J",      Scratch,  -,              OnDemand, CONTACT;
     /// Mean plastic strain of the neighbours without its linear part, for materials that soften where it localises.

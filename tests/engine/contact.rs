@@ -217,6 +217,7 @@ fn mixed_modes_are_the_gradient_of_one_energy() {
     let pair = |a, b, mode| ContactPair {
         bodies: [a, b],
         mode,
+        joint: None,
     };
     case.contacts = vec![
         pair(1, 0, ContactMode::Potential(Potential::default())),
@@ -281,6 +282,7 @@ fn members_of_a_group_have_no_contact_apart_from_the_sums() {
         case.contacts.push(ContactPair {
             bodies: pair,
             mode: ContactMode::Kernel,
+            joint: None,
         });
     }
     let table = ContactTable::new(&case);

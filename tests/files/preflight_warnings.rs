@@ -428,3 +428,38 @@ fn clouds_of_rings_are_told() {
     };
     assert!(!drills(&text("")) && drills(&text(wall)));
 }
+
+/// A joint of what begins ten spacings from each other holds nothing; one of less energy than its bonds store needs finer particles.
+#[test]
+fn joints_that_the_spacing_does_not_fit_are_told() {
+    let joined = |strength: &str| {
+        format!("contact.pair=[{{ bodies = ['bar', 'plate'], joint = {strength} }}]")
+    };
+    let tough = joined("{ strength = '200 MPa', energy = '10 J/m^2' }");
+    let [told_far] = &told(&[&tough])[..] else {
+        panic!("{:?}", told(&[&tough]));
+    };
+    assert_eq!(
+        told_far,
+        "the joint of `bar` and `plate` holds nothing: they begin 10.5 spacings from each other or more"
+    );
+    let near = [
+        "body.plate.shape.box.upper=['3 mm', '2 mm']",
+        "body.bar.velocity=[0, 0]",
+    ];
+    let [told_tough] = &told(&[near[0], near[1], &tough])[..] else {
+        panic!("{:?}", told(&[near[0], near[1], &tough]));
+    };
+    assert!(
+        told_tough.contains("J/m^2 at this spacing, not 10: it stores as much"),
+        "{told_tough}"
+    );
+    assert_told(
+        &[
+            near[0],
+            near[1],
+            &joined("{ strength = '20 MPa', energy = '10 J/m^2' }"),
+        ],
+        &[],
+    );
+}

@@ -598,6 +598,22 @@ fn stress_points_on_any_ranks_and_through_a_restart() {
     assert_same(&one, &stopped, "restart on 3 ranks");
 }
 
+/// A bar of two that are joined, in a quarter, which a third tears apart.
+#[test]
+fn joints_on_any_ranks_and_through_a_restart() {
+    let (_keep, at) = folder();
+    let one = same_anywhere(&["tests/common/joined.toml"], ["3us", "9us"], at, "joints");
+    let contacts = std::fs::read_to_string(one.join("contacts.csv")).expect("the table");
+    let mut rows = contacts
+        .lines()
+        .rev()
+        .map(|row| row.split(',').collect::<Vec<_>>());
+    let last = rows
+        .find(|row| row[1..3] == ["left", "right"])
+        .expect("a row");
+    assert!(last[10].parse::<f64>().expect("heat") > 0.0, "{last:?}");
+}
+
 #[test]
 #[ignore = "slow"]
 fn self_contact_on_any_ranks_and_through_a_restart() {

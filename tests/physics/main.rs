@@ -36,6 +36,7 @@ mod granular;
 mod gravity;
 mod hit_bar;
 mod hole;
+mod joints;
 mod options;
 mod orthotropic;
 mod penalty;

@@ -12,6 +12,7 @@ mod connectivity;
 mod force;
 pub mod friction;
 mod gas;
+mod joint;
 mod mode;
 pub mod overlap;
 mod pair;

@@ -6,6 +6,7 @@ use super::ContactTable;
 use super::accumulators::Accumulators;
 use super::connectivity::Connectivity;
 use super::gas;
+use super::joint;
 use super::mode::{Measurements, Scene, fill};
 use super::sums::ContactSums;
 use super::surfaces::SurfaceForces;
@@ -28,6 +29,7 @@ pub struct Contact {
     /// The same by thread, until they are joined.
     parts: Vec<ContactSums>,
     measurements: Measurements,
+    joints: Vec<Vec<joint::Measured>>,
     tasks: Vec<Task>,
     bodies: usize,
     /// Time that a particle may be enclosed before it counts as interpenetrated (s).
@@ -49,6 +51,7 @@ impl Contact {
             sums: ContactSums::default(),
             parts: vec![ContactSums::default(); rayon::current_num_threads()],
             measurements: Measurements::default(),
+            joints: Vec::new(),
             tasks: Vec::new(),
             bodies: case.bodies.len(),
             enclosed_limit: if speed > 0.0 {
@@ -69,6 +72,11 @@ impl Contact {
             + self.surfaces.memory()
             + self.sums.memory()
             + self.measurements.memory()
+            + self
+                .joints
+                .iter()
+                .map(|found| size_of_val(&found[..]))
+                .sum::<usize>()
             + parts
             + size_of::<Task>() * self.tasks.capacity()
             + tasks
@@ -86,12 +94,14 @@ impl Contact {
             if self.table.has_gas() {
                 gas::stiffen(&self.table.gases, particles);
             }
-            self.measurements.measure(&mut Scene {
+            let scene = &mut Scene {
                 particles,
                 lists,
                 table: &self.table,
                 dt,
-            });
+            };
+            self.measurements.measure(scene);
+            joint::measure(&mut self.joints, scene);
         }
     }
 
@@ -170,12 +180,15 @@ impl Contact {
         if !self.table.is_active() {
             return;
         }
-        let friction = self.table.has_friction();
+        let (friction, joints) = (self.table.has_friction(), self.table.has_joints());
         self.for_each_task(particles, lists, dt, |task, view, foreign, _| {
             if friction {
                 task.add_forces::<true>(view, foreign);
             } else {
                 task.add_forces::<false>(view, foreign);
+            }
+            if joints {
+                task.add_joints(view, foreign);
             }
         });
         self.book(particles);

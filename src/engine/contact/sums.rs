@@ -288,7 +288,8 @@ impl ContactSums {
         if force.heat != 0.0 {
             pair.heat.add(force.heat);
         }
-        pair.touching += i64::from(excess > 0.0);
+        // Joints book apart from what meets.
+        pair.touching += i64::from(excess > 0.0 && force.closest.is_finite());
         let in_order = (body, particle) <= (other, nearest);
         pair.extremes.join(&PairExtremes {
             peak_force: 0.0,

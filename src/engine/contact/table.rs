@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::gas::Gas;
+use super::joint::{JointPair, Joints};
 use super::pair::{Between, Listed, ModePairs, Pair, needs};
 use model::{Body, Case, ContactMode, ContactPair, Loads, SelfContact, cube};
 use numerics::kernel::{Kernel, SUPPORT};
@@ -28,6 +29,8 @@ pub struct ContactTable {
     expansions: Vec<f64>,
     /// Bodies of gas, by body.
     pub(super) gases: Vec<Option<Gas>>,
+    /// What holds bodies together.
+    pub(super) joints: Joints,
     owners: Owner,
     /// True if parts of a body have contact.
     has_own: bool,
@@ -64,6 +67,7 @@ impl ContactTable {
             inverse_densities: Vec::with_capacity(case.bodies.len()),
             expansions: Vec::with_capacity(case.bodies.len()),
             gases: case.bodies.iter().map(|body| Gas::of(case, body)).collect(),
+            joints: Joints::of(case),
             owners: Owner::empty(),
             has_own: case.self_contact.is_some(),
             rings: case.axisymmetric,
@@ -101,6 +105,10 @@ impl ContactTable {
         if table.has_friction() {
             table.owners |= Owner::FRICTION;
         }
+        if table.has_joints() {
+            table.owners |= Owner::JOINTS;
+            table.halo |= HaloPhase::CONTACT;
+        }
         table
     }
 
@@ -128,6 +136,7 @@ impl ContactTable {
         let contacts = case.contacts.iter().map(|pair| ContactPair {
             bodies: pair.bodies.each_ref().map(place),
             mode: pair.mode.clone(),
+            joint: pair.joint,
         });
         Self::new(&Case {
             contacts: contacts.collect(),
@@ -167,6 +176,7 @@ impl ContactTable {
             pair: &pair,
         };
         self.modes.push(&of, &mode);
+        self.joints.push(&of);
         self.pairs.push(pair);
         let [group, other] = [a, b].map(|body| self.groups.of_body[body]);
         if mode.class().is_none() || (group == other && a != b) {
@@ -193,6 +203,12 @@ impl ContactTable {
     #[inline(always)]
     pub(super) fn own<M: Listed>(&self, a: usize, b: usize) -> &M::Pair {
         &M::list(&self.modes)[self.at(a, b)]
+    }
+
+    /// The joint of a receiver of size class `a` and a neighbour of size class `b`, if they have one.
+    #[inline(always)]
+    pub(super) fn joint(&self, a: usize, b: usize) -> Option<&JointPair> {
+        self.joints.get(self.at(a, b))
     }
 
     #[inline(always)]
@@ -282,10 +298,15 @@ impl ContactTable {
         gas.map_or(0.0, |gas| gas.rate(particles, i))
     }
 
+    /// True if any bodies are joined.
+    pub(super) fn has_joints(&self) -> bool {
+        self.joints.any()
+    }
+
     /// True if contact of bodies exchanges heat with their particles.
     #[must_use]
     pub fn has_heat(&self) -> bool {
-        self.has_friction() || self.has_gas()
+        self.has_friction() || self.has_gas() || self.has_joints()
     }
 
     /// True if any pair of bodies has friction or damping.

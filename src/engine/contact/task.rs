@@ -54,4 +54,11 @@ impl Task {
             self.forces.add::<FRICTION>(view, class, list);
         }
     }
+
+    /// Adds the forces of joints on one chunk's receivers.
+    pub fn add_joints(&mut self, view: &ContactView, chunk: &ForeignChunk) {
+        for &class in ContactClass::ALL {
+            self.forces.add_joints(view, chunk.of(class).iter());
+        }
+    }
 }

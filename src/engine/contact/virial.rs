@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::force::ContactStress;
+use super::joint::add_stress;
 use super::mode::stress_of;
 use super::phase::Contact;
 use super::view::ContactView;
@@ -21,7 +22,7 @@ impl Contact {
         dt: f64,
     ) -> Vec<(usize, ContactStress)> {
         let view = ContactView::new(particles, lists, &self.table, dt);
-        let friction = self.table.has_friction();
+        let (friction, joints) = (self.table.has_friction(), self.table.has_joints());
         let chunks = lists.foreign().par_iter().with_max_len(CHUNKS_AT_ONCE);
         let mut carried: Vec<(usize, ContactStress)> = chunks
             .flat_map_iter(|chunk| {
@@ -29,7 +30,11 @@ impl Contact {
                 for &class in ContactClass::ALL {
                     found.extend(chunk.of(class).iter().map(|(index, neighbours)| {
                         let i = view.particle(index);
-                        (i.slot, stress_of(&view, class, &i, neighbours, friction))
+                        let mut stress = stress_of(&view, class, &i, neighbours, friction);
+                        if joints {
+                            add_stress(&view, &i, neighbours, &mut stress);
+                        }
+                        (i.slot, stress)
                     }));
                 }
                 found

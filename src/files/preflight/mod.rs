@@ -5,6 +5,7 @@ mod case;
 mod costs;
 mod impact;
 mod initial;
+mod joints;
 mod kinds;
 pub mod memory;
 mod meshes;
@@ -72,6 +73,7 @@ pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
     initial::warnings(case, &mut messages);
     initial::squeezed(case, &mut messages);
     sense::warnings(case, approaches, &mut messages);
+    joints::warnings(case, &mut messages);
     messages
 }
 

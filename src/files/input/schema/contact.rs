@@ -1,6 +1,7 @@
 //! Contact as it is typed: the keys that all modes share, and one file for each mode with the table
 //! of its keys, and what they make.
 
+mod joint;
 mod overlap;
 mod penalty;
 mod potential;
@@ -10,6 +11,7 @@ use toml::Spanned;
 
 use super::{FrictionParams, SelfContactParams};
 use crate::input::source::Diagnostic;
+use joint::JointParams;
 use model::{ContactDirection, ContactMode, Resistance, SphForm, contact_modes};
 use overlap::OverlapParams;
 use penalty::PenaltyParams;
@@ -48,6 +50,8 @@ tables! {
         friction: Option<Spanned<FrictionParams>>, NotNegative => "the case's";
         /// Share of critical damping.
         damping: Option<Spanned<f64>>, Within(0.0, 1.0) => "the case's";
+        /// What holds them together, as an adhesive does.
+        joint: Option<Spanned<JointParams>> => "they are separate";
         /// Parameters of the mode `overlap`.
         #[serde(default)]
         overlap: OverlapParams;

@@ -70,9 +70,20 @@ fn pair(
     if mode.resistance().is_none() {
         refuse_resistance(params.friction.as_ref(), params.damping.as_ref())?;
     }
+    let mode = params.choice(default, form)?.mode();
+    let joint = params.joint.as_ref();
+    if let Some(joint) = joint.filter(|_| mode.class().is_none()) {
+        let title = format!(
+            "a joint needs contact with forces, and `{}` has none",
+            mode.name()
+        );
+        return Err(Diagnostic::new(joint.span(), title)
+            .help("set `mode = \"overlap\"`; bodies of mode \"kernel\" are one piece"));
+    }
     Ok(ContactPair {
         bodies: [a, b],
-        mode: params.choice(default, form)?.mode(),
+        mode,
+        joint: joint.map(|joint| joint.get_ref().joint()).transpose()?,
     })
 }
 
