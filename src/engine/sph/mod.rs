@@ -20,6 +20,7 @@ mod term_records;
 mod virial;
 
 pub use formulation::{Conventional, Corrected, Normalised, StressPoints};
+pub(crate) use material_update::thinned;
 pub use phase::Sph;
 pub(crate) use phase::with_formulation;
 pub use rest::Resting;

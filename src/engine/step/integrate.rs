@@ -16,7 +16,7 @@ use super::candidate::{BestCandidate, Candidate, Criteria, CriteriaInputs, crite
 use crate::diagnose::Moved;
 use crate::domain::Span;
 use crate::loads::{Acting, Free, Loads, Prescribe, VelocityStage};
-use crate::sph::{SignalSpeed, Smoothing};
+use crate::sph::{SignalSpeed, Smoothing, thinned};
 use numerics::exact_sum::ExactSum;
 use numerics::vector::dot;
 use particles::{ActiveMut, GRAIN, Inactive};
@@ -190,7 +190,7 @@ impl Drifting<'_> {
                         prescribed.set(VelocityStage::End, &mut v_p[k]);
                         let l = &rates.velocity_gradient[i];
                         let strain = half * (l[0] + l[4] + l[8]);
-                        rho_p[k] = rates.density[i] * ((1.0 - strain) / (1.0 + strain));
+                        rho_p[k] = rates.density[i] * thinned(strain);
                         h[k] = smoothing.length(rates.body[i] as usize, rates.mass[i], rho_p[k]);
                     });
                     work
