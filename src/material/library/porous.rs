@@ -188,10 +188,10 @@ fn concrete() -> Parts {
     }
 }
 
-/// `f_c` (Pa), G (Pa), β_c and β_t of concrete of 35 `MPa`.
+/// Compressive strength (Pa), shear modulus (Pa), exponents of the rate in compression and tension of concrete of 35 `MPa`.
 const CONCRETE_35_MPA: [f64; 4] = [35e6, 16.7e9, 0.032, 0.036];
 
-/// Concrete of `[f_c (Pa), G (Pa), β_c, β_t]`; the density is that of the solid.
+/// Concrete of such constants; the density is that of the solid.
 fn concrete_of(
     [
         compressive_strength,
