@@ -215,6 +215,53 @@ fn the_hexagon_of_mohr_and_coulomb_has_its_corners() {
     }
 }
 
+/// A cone has no one angle of friction: that of its Mohr circle is least in triaxial compression and largest in extension, and in
+/// plane strain `sin φ = μ`. On a slope of matter that flows down along it the tangent is μ. The hexagon has one angle in all of them.
+#[test]
+fn a_cone_has_three_angles_of_friction_and_the_hexagon_one() {
+    let friction = 0.77;
+    let cone = of(Strength::DruckerPrager(DruckerPrager {
+        shear_modulus: G,
+        cohesion: 0.0,
+        friction,
+        max_strength: 1e12,
+    }));
+    let hexagon = of(Strength::MohrCoulomb(MohrCoulomb {
+        shear_modulus: G,
+        cohesion: 0.0,
+        friction,
+        tensile_strength: 0.0,
+    }));
+    let sine = |rock: &Material, l: &Matrix3<f64>| {
+        let mut points = pressed(rock, 10e6);
+        shear(rock, &mut points, &(0.05 * l), 200);
+        let total = stress(&points) - Matrix3::identity() * points.pressure[0];
+        let of = total.symmetric_eigenvalues();
+        (of.max() - of.min()) / -(of.max() + of.min())
+    };
+    let root = 3.0_f64.sqrt();
+    let closed = |sign: f64| 3.0 * root * friction / (6.0 + sign * root * friction);
+    let plane = diagonal(1.0, -1.0, 0.0);
+    let simple = Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    for (l, exact) in [
+        (diagonal(-1.0, 0.5, 0.5), closed(1.0)),
+        (plane, friction),
+        (diagonal(1.0, -0.5, -0.5), closed(-1.0)),
+    ] {
+        assert_near(sine(&cone, &l), exact, 1e-3, "cone");
+        assert_near(
+            sine(&hexagon, &l),
+            libm::sin(libm::atan(friction)),
+            1e-3,
+            "hexagon",
+        );
+    }
+    let mut points = pressed(&cone, 10e6);
+    shear(&cone, &mut points, &(0.05 * simple), 200);
+    let total = stress(&points) - Matrix3::identity() * points.pressure[0];
+    assert_near(total[(0, 1)] / -total[(1, 1)], friction, 0.02, "a slope");
+}
+
 /// No principal stress exceeds the bound of tension, and no mean tension that of the tip.
 #[test]
 fn a_bound_of_tension_holds_in_all_directions() {

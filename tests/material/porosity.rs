@@ -174,6 +174,23 @@ fn crushing_follows_its_curve_in_steps_of_any_size() {
     }
 }
 
+/// Pumice of the library crushes on the curve of Jutzi et al. (2009) before and beyond its transition, and what is dense has failed.
+#[test]
+fn pumice_crushes_on_its_curve() {
+    let pumice = library::find("pumice").unwrap();
+    for end in [1.4, 1.8, 2.2, 2.6, 3.2, 3.8, 4.3] {
+        let point = at(&pumice, &PointBatch::ZERO, end, 0.0);
+        let (p, alpha) = (point.pressure[2], point.distension[2]);
+        let left = |to: f64, exponent: i32| ((to - p) / (to - 1e6)).max(0.0).powi(exponent);
+        let exact = 1.0 + (4.64 - 1.9) * left(68e6, 12) + 0.9 * left(213e6, 3);
+        assert!((alpha - exact).abs() < 1e-6, "{end}: {p} {alpha} {exact}");
+        assert!(p > 1e6 && p < 213e6, "{end}: {p}");
+    }
+    let dense = at(&pumice, &PointBatch::ZERO, 5.0, 0.0);
+    assert_eq!((dense.distension[0], dense.compaction[0]), (1.0, 1.0));
+    assert!(dense.damage[0] > 0.999, "{}", dense.damage[0]);
+}
+
 /// The numbers of the curve of strain by hand: elastic, exponential, quadratic, dense.
 #[test]
 fn strain_tells_the_distension() {

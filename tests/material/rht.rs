@@ -96,6 +96,31 @@ fn the_surface_has_the_strengths_of_its_tests() {
     near(borne(&concrete, p, TENSION, 1.0), friction, "friction");
 }
 
+/// Concretes of the library fail in uniaxial compression at the strengths of their names, and follow the rate by exponents of these.
+#[test]
+fn concretes_have_the_strengths_of_their_names() {
+    for (name, megapascals) in [("concrete-35", 35.0), ("concrete-140", 140.0)] {
+        let Strength::RiedelHiermaierThoma(law) = library::find(name).unwrap().strength else {
+            unreachable!()
+        };
+        let strength = 1e6 * megapascals;
+        let usual = [4.0 / (20.0 + 3.0 * megapascals), 2.0 / (20.0 + megapascals)];
+        for (exponent, usual) in [law.rate_compression, law.rate_tension].iter().zip(usual) {
+            assert!(
+                (exponent / usual - 1.0).abs() < 0.02,
+                "{name}: {exponent} {usual}"
+            );
+        }
+        let slow = concrete(RiedelHiermaierThoma {
+            reference_compression: 1e9,
+            reference_tension: 1e9,
+            ..law
+        });
+        let found = borne(&slow, strength / 3.0, COMPRESSION, 0.0);
+        assert!((found / strength - 1.0).abs() < 1e-6, "{name}: {found}");
+    }
+}
+
 /// The rate multiplies the strength in uniaxial compression and tension by its factors.
 #[test]
 fn the_rate_multiplies_the_strength() {

@@ -12,6 +12,7 @@ mod project;
 mod absorbing;
 mod alone;
 mod contacts;
+mod cratering;
 mod dam;
 mod debris;
 mod flyer;

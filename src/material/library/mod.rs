@@ -1,6 +1,6 @@
 //! Ready materials, each number with its source.
 //!
-//! Only records of `ceramics`, `composites`, `ductile`, `fabrics` and `rocks`, and concrete, fail. Spall strengths depend on the rate of the load: theirs are those
+//! Only records of `ceramics`, `composites`, `ductile`, `fabrics` and `rocks`, concrete and pumice, fail. Spall strengths depend on the rate of the load: theirs are those
 //! of plate impacts, and a case may state its own.
 
 use super::{Eos, Failure, Material, Strength, Thermal, ThermalConstants};

@@ -36,8 +36,14 @@ const FITTED_SIZE: &str = "the size with which the flaws give the largest fragme
 const ICE_FLAWS: &str = "Benz & Asphaug (1999), Icarus 142, 5, as miluphcuda quotes it; Schäfer et \
      al. (2016) have 1e46/m³, 9.1";
 const CRACKS: &str = "Grady & Kipp (1980), Int. J. Rock Mech. Min. Sci. 17, 147";
-const IVANOV: &str = "rock of Raducan et al. (2019), Icarus 329, 282, their inputs for iSALE; \
+pub(super) const IVANOV: &str = "rock of Raducan et al. (2019), Icarus 329, 282, their inputs for iSALE; \
      Ivanov et al. (1997), Int. J. Impact Eng. 20, 411";
+const LIMESTONE: &str =
+    "limestone of Melosh (1989), Impact cratering, table AII.3, as Spheral quotes it";
+const CALCITE: &str = "calcite of iSALE's example of Chicxulub";
+const CALCITE_SHEAR: &str = "ν = .3 of calcite in iSALE's example of Chicxulub, with A";
+const CALCITE_DAMAGE: &str =
+    "Ivanov et al. (1997), Int. J. Impact Eng. 20, 411, as in iSALE's example of Chicxulub";
 const DUNITE: &str = "dunite of Bowling et al. (2013), J. Geophys. Res. 118, 1821, as miluphcuda \
      quotes it";
 const ICE: &str = "from a Hugoniot elastic limit of .62 GPa of cold ice, Stewart & Ahrens (2005), J. \
@@ -46,8 +52,8 @@ const ICE: &str = "from a Hugoniot elastic limit of .62 GPa of cold ice, Stewart
 const REGOLITH: &str = "dry regolith of Schäfer et al. (2017), as miluphcuda quotes it in \
      Regolith.cfg, φ = 30°; a linear law for its Murnaghan's";
 const LINEAR_FORM: &str = "the first term of Murnaghan's law";
-const OFF: &str = "none: heat is left out";
-const SAME: &str = "that of intact rock";
+pub(super) const OFF: &str = "none: heat is left out";
+pub(super) const SAME: &str = "that of intact rock";
 const FADES: &str = "as the laws have it";
 
 records! {
@@ -171,6 +177,29 @@ records! {
             ("eos.tillotson.least_density", UNCUT),
             ("", ICE_TILLOTSON),
         ];
+    "limestone", "limestone of the ground to vaporisation, weak by joints: friction and shear damage":
+        {
+            let mut strength = collins([18.46e9, 5e6, 1.0, 0.5e9], [10e3, 0.4]);
+            strength.damaged_max_strength = 0.5e9;
+            rock(
+                tillotson(2700.0, [0.5, 0.6, 40e9, 67e9], [10e6, 2.5e6, 14e6], [5.0, 5.0]),
+                Strength::Collins(strength),
+                Failure {
+                    ivanov: Some(SHEAR),
+                    ..Failure::NONE
+                },
+            )
+        },
+        &[
+            ("strength.collins.shear_modulus", CALCITE_SHEAR),
+            ("strength.collins.softening", OFF),
+            ("strength.collins.simon", OFF),
+            ("strength", CALCITE),
+            ("failure.effect", FADES),
+            ("failure", CALCITE_DAMAGE),
+            ("eos.tillotson.least_density", UNCUT),
+            ("", LIMESTONE),
+        ];
     "regolith", "loose dry regolith for slow loads: friction alone, no cohesion; not for shocks":
         Parts {
             density: 1500.0,
@@ -194,7 +223,7 @@ records! {
 const TAN_30: f64 = 0.577_350_269_189_625_8;
 
 /// Ivanov's shear damage of rock.
-const SHEAR: Ivanov = Ivanov {
+pub(super) const SHEAR: Ivanov = Ivanov {
     least_strain: 1e-4,
     slope: 1e-11,
     pressure: 300e6,
