@@ -698,3 +698,30 @@ shape.cylinder = { axis = "z", radius = "9 mm", length = "1.2 mm", centre = [0, 
     let mass = case.particle_mass(floor) * count;
     assert!((mass / (324e-6) - 1.0).abs() < 1e-9, "{mass}");
 }
+
+/// A layer lies across its thinnest side, however thick it is, also where only two directions are.
+#[test]
+fn a_thick_layer_in_two_dimensions_has_its_mass_for_an_area() {
+    let case = parse(
+        "case.toml",
+        r#"
+dimension = 2
+axisymmetric = true
+spacing = "0.1 mm"
+run.end_time = "1 us"
+material.cloth.library = "kevlar-fabric"
+[[body]]
+name = "blanket"
+material = "cloth"
+areal_density = "2 kg/m^2"
+shape.box = { lower = [0, "-4 mm"], upper = ["6 mm", 0] }
+"#,
+        &[],
+    )
+    .unwrap_or_else(|error| panic!("{error}"));
+    let [blanket] = case.bodies.as_slice() else {
+        panic!("a body")
+    };
+    assert!((case.initial_density(blanket) * 4e-3 - 2.0).abs() < 1e-12);
+    assert_eq!(blanket.initial.fibres.as_ref().unwrap().normal, Vec3::y());
+}

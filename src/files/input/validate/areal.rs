@@ -90,13 +90,14 @@ fn thickness(
     params: &BodyParams,
     dimension: usize,
 ) -> Result<Option<f64>, Diagnostic> {
-    let normal = fibres::normal(params.fibres.as_ref(), body, dimension)?;
+    let normal = fibres::normal(params, body, dimension)?;
     let along = match &body.shape {
         Shape::Box { .. } => normal.iter().any(|c| c.abs() == 1.0),
         Shape::Cylinder { axis, .. } => normal[axis.index()].abs() == 1.0,
         _ => false,
     };
-    Ok(along.then(|| body.thickness_along(&normal, dimension)))
+    let thickness = body.thickness_along(&normal, dimension);
+    Ok(Some(thickness).filter(|thickness| along && thickness.is_finite()))
 }
 
 /// The same material with another distension.

@@ -43,7 +43,7 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
             return Err(Diagnostic::new(at, title));
         }
         let across = if has_members {
-            across(body, dimension)
+            across(body, table.get_ref(), dimension)
         } else {
             Vec3::z()
         };
@@ -90,8 +90,8 @@ fn straight(normal: Vec3) -> Fibres {
     }
 }
 
-/// Across the plate that a body is; z of any other.
-fn across(body: &Body, dimension: usize) -> Vec3 {
+/// Across the layer or the plate that a body is; z of any other.
+fn across(body: &Body, params: &BodyParams, dimension: usize) -> Vec3 {
     let unit = |a: usize| Vec3::from_fn(|b, _| f64::from(u8::from(a == b)));
     let mut sides: Vec<(f64, usize)> = (0..dimension)
         .map(|a| (body.thickness_along(&unit(a), dimension), a))
@@ -99,18 +99,19 @@ fn across(body: &Body, dimension: usize) -> Vec3 {
     sides.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (thin, axis) = sides[0];
     let is_plate = sides.get(1).is_none_or(|(wide, _)| thin <= THIN * wide);
-    if is_plate { unit(axis) } else { Vec3::z() }
+    if is_plate || params.areal_density.is_some() {
+        unit(axis)
+    } else {
+        Vec3::z()
+    }
 }
 
 /// Direction 3 of a body whose matter may have some, as `fibres` says or as it is a plate.
-pub fn normal(
-    stated: Option<&Spanned<FibresParams>>,
-    body: &Body,
-    dimension: usize,
-) -> Result<Vec3, Diagnostic> {
+pub fn normal(params: &BodyParams, body: &Body, dimension: usize) -> Result<Vec3, Diagnostic> {
+    let stated = params.fibres.as_ref();
     match stated.and_then(|table| table.get_ref().normal.as_ref()) {
         Some(normal) => axis_vector(Some(normal)),
-        None => Ok(across(body, dimension)),
+        None => Ok(across(body, params, dimension)),
     }
 }
 
