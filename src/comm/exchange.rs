@@ -23,6 +23,16 @@ pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> 
     starts.map(move |start| start..length.min(start.saturating_add(most)))
 }
 
+/// Takes a value from the start of a message.
+///
+/// # Panics
+/// If the message has ended.
+pub fn read_pod<T: bytemuck::Pod>(bytes: &mut &[u8]) -> T {
+    let (value, rest) = bytes.split_at(size_of::<T>());
+    *bytes = rest;
+    bytemuck::pod_read_unaligned(value)
+}
+
 /// Messages and bytes sent, for reports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
@@ -92,6 +102,13 @@ impl Peer {
     #[must_use]
     pub fn incoming(&self) -> &[u8] {
         &self.receive
+    }
+
+    /// Replaces the message to it by an answer to its own, which is taken.
+    pub fn answer(&mut self, write: impl FnOnce(&[u8], &mut Vec<u8>)) {
+        self.send.clear();
+        write(&self.receive, &mut self.send);
+        self.receive.clear();
     }
 }
 

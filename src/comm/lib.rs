@@ -6,11 +6,13 @@
 
 mod exchange;
 mod joint;
+mod relay;
 mod virtual_ranks;
 mod waiting;
 
-pub use exchange::{Exchange, Peer, Traffic, pieces};
+pub use exchange::{Exchange, Peer, Traffic, pieces, read_pod};
 pub use joint::Joint;
+pub use relay::{Receivers, Record, Relay};
 pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
