@@ -199,6 +199,7 @@ impl Exchange {
     ///
     /// # Panics
     /// If a message is larger than memory can be.
+    #[track_caller]
     pub fn post_sizes(&mut self, comm: &Comm) {
         self.sizes.clear();
         let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
@@ -215,6 +216,7 @@ impl Exchange {
     }
 
     /// Starts all messages; returns at once.
+    #[track_caller]
     pub fn post(&mut self, comm: &Comm) {
         match &comm.transport {
             Transport::Solo => {}
@@ -298,6 +300,7 @@ impl Exchange {
         }
     }
 
+    #[track_caller]
     fn swap_sizes_virtually(&mut self, me: &Rank) {
         for (k, size) in self.sizes.iter().enumerate() {
             me.send(self.rank(k), Tag::Size, &size[0].to_ne_bytes(), 1);
@@ -310,6 +313,7 @@ impl Exchange {
         }
     }
 
+    #[track_caller]
     fn post_virtually(&mut self, me: &Rank) {
         let says = |k: &usize| !self.peers[*k].receive.is_empty();
         let ticket = |k: usize| (k, me.expect(self.rank(k), Tag::Data));

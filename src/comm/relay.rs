@@ -108,6 +108,7 @@ impl<T> Default for Way<T> {
 
 impl<T: Record> Way<T> {
     /// Sends what is to go `to` places, of which the `ranks` are these.
+    #[track_caller]
     fn go(
         &mut self,
         comm: &Comm,
@@ -142,6 +143,7 @@ impl<T: Record> Way<T> {
 
     /// Gives back each record that has come as it is now, so that what had gone is what it has become, in the order of
     /// keys.
+    #[track_caller]
     fn come_back(&mut self, comm: &Comm, to: impl Fn(u64) -> usize)
     where
         T: Pod,
@@ -215,6 +217,7 @@ impl<T: Record> Relay<T> {
 
     /// Sends all ranks' `records`; what is left in them has no meaning. `join` joins the second of two records of one key
     /// with the first, in any order. Gives those that have come to this rank, by keys. Collective.
+    #[track_caller]
     pub fn send(
         &mut self,
         comm: &Comm,
@@ -240,6 +243,7 @@ impl<T: Record> Relay<T> {
 
     /// After [`Self::send`]: gives this rank one record of each key that it has sent, as it is now where it has come to, by
     /// keys. Collective.
+    #[track_caller]
     pub fn come_back(&mut self, comm: &Comm, records: &mut Vec<T>)
     where
         T: Pod,
