@@ -172,6 +172,15 @@ impl Comm {
         }
     }
 
+    /// Seconds by this rank's clock, which for a virtual one is that of its machine; only differences mean anything.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        match &self.transport {
+            Transport::Virtual(_) => Rank::time().now,
+            Transport::Solo | Transport::Mpi(_) => waiting::since_start(),
+        }
+    }
+
     /// The traffic of this rank so far by the calls in the source that caused it, if it is a virtual one.
     #[must_use]
     pub fn traffic_by_call(&self) -> BTreeMap<Call, CallTraffic> {

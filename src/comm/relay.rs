@@ -26,6 +26,8 @@ pub trait Record: Clone {
 pub enum Receivers {
     /// All, or all but some √P, each its share of the keys.
     Owners,
+    /// The same, with one owner for all keys of an upper half.
+    OwnersByUpperHalf,
     /// Rank 0.
     Root,
 }
@@ -72,9 +74,11 @@ impl Rows {
 
     /// Row and column to which records of a key go.
     fn receiver(self, receivers: Receivers, key: u64) -> [usize; 2] {
-        if receivers == Receivers::Root {
-            return [0, 0];
-        }
+        let key = match receivers {
+            Receivers::Owners => key,
+            Receivers::OwnersByUpperHalf => key >> 32,
+            Receivers::Root => return [0, 0],
+        };
         // By the upper bits of a product with 2⁶⁴ over the golden ratio, which spreads keys that follow each other
         // (Knuth, The Art of Computer Programming 3, 6.4).
         let hash = key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
