@@ -179,8 +179,9 @@ impl<T: Record> Way<T> {
                 let mut bytes = exchange.incoming(number(place));
                 part.fill_with(|| T::read(&mut bytes));
             } else {
-                part.iter_mut()
-                    .for_each(|record| *record = now(record.key()));
+                for record in part {
+                    *record = now(record.key());
+                }
             }
         }
         self.gone.sort_unstable_by_key(T::key);
