@@ -37,9 +37,8 @@ pub struct Partition {
 /// Regular balances from one look at levels and axes to the next.
 const REVISED: u64 = 8;
 
-/// Cost of a balance in steps, before it has been measured, and between which it is believed.
-const PRICE: f64 = 0.1;
-const PRICES: [f64; 2] = [0.05, 25.0];
+/// Cost of a balance in steps, at least, with the moves that follow it, and at most.
+const PRICES: [f64; 2] = [0.1, 25.0];
 
 /// Cost of a balance, as it is measured.
 #[derive(Debug, Clone, Copy)]
@@ -52,7 +51,7 @@ struct Price {
 
 impl Price {
     const UNKNOWN: Self = Self {
-        steps: PRICE,
+        steps: PRICES[0],
         ended: None,
     };
 
