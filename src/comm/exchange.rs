@@ -23,6 +23,16 @@ pub fn pieces(length: usize, most: usize) -> impl Iterator<Item = Range<usize>> 
     starts.map(move |start| start..length.min(start.saturating_add(most)))
 }
 
+/// Takes a value from the start of a message.
+///
+/// # Panics
+/// If the message has ended.
+pub fn read_pod<T: bytemuck::Pod>(bytes: &mut &[u8]) -> T {
+    let (value, rest) = bytes.split_at(size_of::<T>());
+    *bytes = rest;
+    bytemuck::pod_read_unaligned(value)
+}
+
 /// Messages and bytes sent, for reports.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Traffic {
@@ -92,6 +102,13 @@ impl Peer {
     #[must_use]
     pub fn incoming(&self) -> &[u8] {
         &self.receive
+    }
+
+    /// Replaces the message to it by an answer to its own, which is taken.
+    pub fn answer(&mut self, write: impl FnOnce(&[u8], &mut Vec<u8>)) {
+        self.send.clear();
+        write(&self.receive, &mut self.send);
+        self.receive.clear();
     }
 }
 
@@ -182,6 +199,7 @@ impl Exchange {
     ///
     /// # Panics
     /// If a message is larger than memory can be.
+    #[track_caller]
     pub fn post_sizes(&mut self, comm: &Comm) {
         self.sizes.clear();
         let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
@@ -198,6 +216,7 @@ impl Exchange {
     }
 
     /// Starts all messages; returns at once.
+    #[track_caller]
     pub fn post(&mut self, comm: &Comm) {
         match &comm.transport {
             Transport::Solo => {}
@@ -281,6 +300,7 @@ impl Exchange {
         }
     }
 
+    #[track_caller]
     fn swap_sizes_virtually(&mut self, me: &Rank) {
         for (k, size) in self.sizes.iter().enumerate() {
             me.send(self.rank(k), Tag::Size, &size[0].to_ne_bytes(), 1);
@@ -293,6 +313,7 @@ impl Exchange {
         }
     }
 
+    #[track_caller]
     fn post_virtually(&mut self, me: &Rank) {
         let says = |k: &usize| !self.peers[*k].receive.is_empty();
         let ticket = |k: usize| (k, me.expect(self.rank(k), Tag::Data));

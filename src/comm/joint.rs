@@ -1,8 +1,8 @@
 //! Reduction of all that ranks agree on in a step, in one call.
 //!
 //! MPI combines words of one type by one operation. A step needs four: sums, minima, the first of some
-//! entries, and a set of bits. All of them together are one element of a type of their own, since MPI may cut
-//! a message anywhere between elements, and the operation must know the meaning of each word.
+//! entries, and a set of bits. Few words are one element of a type of their own, many some elements of equal length, each
+//! of which tells the operation the meaning of its words: MPI may cut a message anywhere between elements.
 
 use std::ffi::{c_int, c_void};
 use std::mem::MaybeUninit;
@@ -13,8 +13,11 @@ use mpi::traits::AsRaw;
 use super::waiting::waiting;
 use super::{Comm, RawComm, Transport};
 
-/// Words before the minima: the number of all words, the number of minima, the bits, and the first entry.
+/// Words before those of an element: their number, the number of minima, the bits, and the first entry.
 const HEAD: usize = 6;
+
+/// Words of an element at most. MPI may cut what is more between elements, and send some while it combines others.
+const MOST: usize = 2048;
 
 /// Values that ranks reduce together. All ranks have as many sums and minima. Buffers are kept from step
 /// to step.
@@ -39,26 +42,52 @@ impl Joint {
         8 * (words + self.words.capacity())
     }
 
+    /// Words of an element, but for its head, and the number of elements.
+    fn elements(&self) -> [usize; 2] {
+        let all = self.least.len() + self.sums.len();
+        let count = all.div_ceil(MOST).max(1);
+        [all.div_ceil(count), count]
+    }
+
     fn pack(&mut self) {
+        let [each, count] = self.elements();
         let [a, b, c] = self.first;
-        let (least, sums) = (self.least.len(), self.sums.len());
         self.words.clear();
-        self.words
-            .extend([(HEAD + least + sums) as u64, least as u64, self.bits]);
-        self.words.extend([a, b, c]);
-        self.words.extend_from_slice(&self.least);
-        self.words
-            .extend_from_slice(bytemuck::cast_slice(&self.sums));
+        for k in 0..count {
+            let least = part(&self.least, k * each, each);
+            let head = [each as u64, least.len() as u64, self.bits, a, b, c];
+            self.words.extend(head);
+            self.words.extend_from_slice(least);
+            let before = (k * each + least.len()).saturating_sub(self.least.len());
+            let sums = part(&self.sums, before, each - least.len());
+            self.words.extend_from_slice(bytemuck::cast_slice(sums));
+            // The last one may be shorter.
+            self.words.resize((k + 1) * (HEAD + each), 0);
+        }
     }
 
     fn unpack(&mut self) {
-        let (head, rest) = self.words.split_at(HEAD);
-        let (least, sums) = rest.split_at(self.least.len());
-        self.bits = head[2];
-        self.first.copy_from_slice(&head[3..]);
-        self.least.copy_from_slice(least);
-        self.sums.copy_from_slice(bytemuck::cast_slice(sums));
+        let [each, _] = self.elements();
+        self.bits = self.words[2];
+        self.first.copy_from_slice(&self.words[3..HEAD]);
+        let (mut least, mut sums) = (self.least.as_mut_slice(), self.sums.as_mut_slice());
+        for element in self.words.chunks_exact(HEAD + each) {
+            let (minima, rest) = element[HEAD..].split_at(least.len().min(each));
+            let here;
+            (here, least) = std::mem::take(&mut least).split_at_mut(minima.len());
+            here.copy_from_slice(minima);
+            let here;
+            let count = sums.len().min(rest.len());
+            (here, sums) = std::mem::take(&mut sums).split_at_mut(count);
+            here.copy_from_slice(bytemuck::cast_slice(&rest[..count]));
+        }
     }
+}
+
+/// So many of some words from a place on, or as many as there are.
+fn part<T>(words: &[T], from: usize, count: usize) -> &[T] {
+    let rest = words.get(from..).unwrap_or_default();
+    &rest[..count.min(rest.len())]
 }
 
 impl Comm {
@@ -66,6 +95,7 @@ impl Comm {
     ///
     /// # Panics
     /// If ranks have not as many sums and smallest numbers.
+    #[track_caller]
     pub fn join(&self, joint: &mut Joint) {
         if self.size() == 1 {
             return;
@@ -76,15 +106,23 @@ impl Comm {
             Transport::Mpi(world) => {
                 let mut mine = self.scratch.borrow_mut();
                 mine.clone_from(&joint.words);
-                join_by_mpi(world.as_raw(), &mine, &mut joint.words);
+                let [each, _] = joint.elements();
+                join_by_mpi(world.as_raw(), HEAD + each, &mine, &mut joint.words);
             }
-            Transport::Virtual(rank) => rank.reduce(&mut joint.words, combine),
+            Transport::Virtual(rank) => {
+                let [each, _] = joint.elements();
+                rank.reduce(&mut joint.words, |all, mine| {
+                    let elements = mine.chunks_exact(HEAD + each);
+                    let all = all.chunks_exact_mut(HEAD + each);
+                    all.zip(elements).for_each(|(all, mine)| combine(all, mine));
+                });
+            }
         }
         joint.unpack();
     }
 }
 
-/// Joins a rank's words with those of all.
+/// Joins a rank's element with that of all.
 fn combine(all: &mut [u64], mine: &[u64]) {
     let (head, rest) = all.split_at_mut(HEAD);
     let (my_head, my_rest) = mine.split_at(HEAD);
@@ -111,10 +149,10 @@ unsafe extern "C" fn combine_elements(
     _: *mut ffi::MPI_Datatype,
 ) {
     let (mut mine, mut all) = (mine.cast::<u64>(), all.cast::<u64>());
-    // SAFETY: MPI passes `count` elements each, as its types say: words, of which the first counts all.
+    // SAFETY: MPI passes `count` elements each, as its types say: words, of which the first counts those after the head.
     unsafe {
         for _ in 0..*count {
-            let length = usize::try_from(*all).unwrap_or(HEAD);
+            let length = HEAD + usize::try_from(*all).unwrap_or(0);
             let my_words = std::slice::from_raw_parts(mine, length);
             combine(std::slice::from_raw_parts_mut(all, length), my_words);
             (mine, all) = (mine.add(length), all.add(length));
@@ -122,9 +160,10 @@ unsafe extern "C" fn combine_elements(
     }
 }
 
-fn join_by_mpi(world: RawComm, mine: &[u64], all: &mut [u64]) {
-    let length = c_int::try_from(mine.len()).expect("few words");
-    // SAFETY: both buffers hold one element of the type, which lives until the call is over, as the
+fn join_by_mpi(world: RawComm, each: usize, mine: &[u64], all: &mut [u64]) {
+    let number = |words| c_int::try_from(words).expect("few words");
+    let (length, count) = (number(each), number(mine.len() / each));
+    // SAFETY: both buffers hold so many elements of the type, which lives until the call is over, as the
     // operation does; `combine_elements` has the signature of an MPI operation.
     unsafe {
         let mut element = ffi::RSMPI_DATATYPE_NULL;
@@ -134,7 +173,7 @@ fn join_by_mpi(world: RawComm, mine: &[u64], all: &mut [u64]) {
         ffi::MPI_Op_create(Some(combine_elements), 1, operation.as_mut_ptr());
         let mut operation = operation.assume_init();
         let (mine, all) = (mine.as_ptr().cast(), all.as_mut_ptr().cast());
-        waiting(|| ffi::MPI_Allreduce(mine, all, 1, element, operation, world));
+        waiting(|| ffi::MPI_Allreduce(mine, all, count, element, operation, world));
         ffi::MPI_Op_free(&raw mut operation);
         ffi::MPI_Type_free(&raw mut element);
     }
@@ -175,5 +214,36 @@ mod tests {
         }
         combine(&mut all.words, &mine.words);
         assert_eq!(two, words(&all));
+    }
+
+    #[test]
+    fn any_number_of_words_is_joined_in_pieces() {
+        let counts = [0, 1, 7, MOST - 1, MOST, MOST + 1, 2 * MOST + 5];
+        for (least, sums) in counts.iter().flat_map(|&a| counts.map(|b| (a, b))) {
+            let found = super::super::virtual_ranks(3, super::super::Machine::IDEAL, |comm| {
+                let rank = comm.rank() as u64;
+                let mut joint = Joint {
+                    sums: (0..).map(|k| k << rank).take(sums).collect(),
+                    least: (0..).map(|k| (k + rank) % 3).take(least).collect(),
+                    first: [7, 2 - rank, rank],
+                    bits: 1 << rank,
+                    ..Joint::default()
+                };
+                comm.join(&mut joint);
+                joint
+            });
+            for joint in found {
+                assert!(
+                    joint
+                        .sums
+                        .iter()
+                        .copied()
+                        .eq((0..).map(|k| 7 * k).take(sums))
+                );
+                assert_eq!(joint.least, vec![0; least]);
+                assert_eq!((joint.first, joint.bits), ([7, 0, 2], 7));
+                assert_eq!(joint.words.len() % joint.elements()[1], 0);
+            }
+        }
     }
 }

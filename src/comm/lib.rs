@@ -6,15 +6,18 @@
 
 mod exchange;
 mod joint;
+mod relay;
 mod virtual_ranks;
 mod waiting;
 
-pub use exchange::{Exchange, Peer, Traffic, pieces};
+pub use exchange::{Exchange, Peer, Traffic, pieces, read_pod};
 pub use joint::Joint;
-pub use virtual_ranks::{Computing, Machine, VirtualTime, virtual_ranks};
+pub use relay::{Receivers, Record, Relay};
+pub use virtual_ranks::{Call, CallTraffic, Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use mpi::collective::SystemOperation;
@@ -169,6 +172,24 @@ impl Comm {
         }
     }
 
+    /// Seconds by this rank's clock, which for a virtual one is that of its machine; only differences mean anything.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        match &self.transport {
+            Transport::Virtual(_) => Rank::time().now,
+            Transport::Solo | Transport::Mpi(_) => waiting::since_start(),
+        }
+    }
+
+    /// The traffic of this rank so far by the calls in the source that caused it, if it is a virtual one.
+    #[must_use]
+    pub fn traffic_by_call(&self) -> BTreeMap<Call, CallTraffic> {
+        match &self.transport {
+            Transport::Virtual(_) => virtual_ranks::calls(),
+            Transport::Solo | Transport::Mpi(_) => BTreeMap::new(),
+        }
+    }
+
     /// Advances the clock of a virtual rank by seconds of computing, where they are
     /// [reported](Computing::Reported). Does nothing else.
     pub fn compute(&self, seconds: f64) {
@@ -178,6 +199,7 @@ impl Comm {
     }
 
     /// Waits for all ranks.
+    #[track_caller]
     pub fn barrier(&self) {
         match &self.transport {
             Transport::Solo => {}
@@ -187,26 +209,31 @@ impl Comm {
     }
 
     /// Replaces each number by its sum over ranks (wrapping is the caller's concern).
+    #[track_caller]
     pub fn sum_i64(&self, values: &mut [i64]) {
         self.reduce(values, SystemOperation::sum(), i64::wrapping_add);
     }
 
     /// Replaces each number by its sum over ranks.
+    #[track_caller]
     pub fn sum_u64(&self, values: &mut [u64]) {
         self.reduce(values, SystemOperation::sum(), u64::wrapping_add);
     }
 
     /// Replaces each number by its largest over ranks.
+    #[track_caller]
     pub fn max_u64(&self, values: &mut [u64]) {
         self.reduce(values, SystemOperation::max(), u64::max);
     }
 
     /// Replaces each number by its smallest over ranks.
+    #[track_caller]
     pub fn min_u64(&self, values: &mut [u64]) {
         self.reduce(values, SystemOperation::min(), u64::min);
     }
 
     /// Largest of a number over ranks.
+    #[track_caller]
     #[must_use]
     pub fn max_f64(&self, value: f64) -> f64 {
         let mut values = [value];
@@ -215,6 +242,7 @@ impl Comm {
     }
 
     /// Smallest of a number over ranks.
+    #[track_caller]
     #[must_use]
     pub fn min_f64(&self, value: f64) -> f64 {
         let mut values = [value];
@@ -223,6 +251,7 @@ impl Comm {
     }
 
     /// Returns true on every rank if `yes` is true on any.
+    #[track_caller]
     #[must_use]
     pub fn any(&self, yes: bool) -> bool {
         let mut values = [u64::from(yes)];
@@ -231,6 +260,7 @@ impl Comm {
     }
 
     /// Joins every rank's `values` (the same length everywhere) in rank order into `all`.
+    #[track_caller]
     pub fn all_gather_u64(&self, values: &[u64], all: &mut Vec<u64>) {
         all.resize(values.len() * self.size(), 0);
         match &self.transport {
@@ -241,6 +271,7 @@ impl Comm {
     }
 
     /// Sends `sends[r]` to rank r, receives what rank r sent here in `receives[r]`.
+    #[track_caller]
     pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
         receives.resize(self.size(), 0);
         match &self.transport {
@@ -253,6 +284,7 @@ impl Comm {
     }
 
     /// Gives every rank the root's bytes.
+    #[track_caller]
     pub fn broadcast(&self, bytes: &mut Vec<u8>) {
         self.broadcast_from(0, bytes);
     }
@@ -261,6 +293,7 @@ impl Comm {
     ///
     /// # Panics
     /// If there is no such rank.
+    #[track_caller]
     pub fn broadcast_from(&self, from: usize, bytes: &mut Vec<u8>) {
         match &self.transport {
             Transport::Solo => assert_eq!(from, 0, "there is one rank"),
@@ -270,6 +303,7 @@ impl Comm {
     }
 
     /// Combines values of eight bytes over ranks, by MPI's operation or the function that does the same.
+    #[track_caller]
     fn reduce<T>(&self, values: &mut [T], operation: SystemOperation, combine: fn(T, T) -> T)
     where
         T: bytemuck::Pod + mpi::traits::Equivalence,

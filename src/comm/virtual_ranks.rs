@@ -13,8 +13,8 @@ mod clock;
 mod rank;
 mod world;
 
-pub use clock::VirtualTime;
-pub(super) use clock::waited;
+pub use clock::{Call, CallTraffic, VirtualTime};
+pub(super) use clock::{calls, waited};
 pub(super) use rank::Rank;
 pub(super) use world::{Tag, Ticket};
 

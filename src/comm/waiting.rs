@@ -4,6 +4,7 @@
 //! [`waiting`], which separates a rank's own work from its waiting.
 
 use std::cell::Cell;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use super::virtual_ranks;
@@ -18,6 +19,12 @@ thread_local! {
 #[must_use]
 pub fn waited() -> Duration {
     virtual_ranks::waited().unwrap_or_else(|| WAITED.get())
+}
+
+/// Seconds since a first call of this.
+pub(super) fn since_start() -> f64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    START.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
 /// A call that waits for others.

@@ -11,6 +11,7 @@ mod project;
 
 mod bits;
 mod bridge;
+mod broken;
 mod cloud;
 mod contact;
 mod core;

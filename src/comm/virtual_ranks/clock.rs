@@ -1,12 +1,44 @@
 //! The clock of a virtual rank, which is its thread.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::panic::Location;
 use std::time::{Duration, Instant};
 
 use super::Computing;
 
 thread_local! {
     static CLOCK: Cell<Option<Clock>> = const { Cell::new(None) };
+    static CALLS: RefCell<BTreeMap<Call, CallTraffic>> = const { RefCell::new(BTreeMap::new()) };
+}
+
+/// A place in the source that calls this crate.
+pub type Call = &'static Location<'static>;
+
+/// Traffic of a virtual rank by one call in the source so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CallTraffic {
+    /// Messages to peers, and collective calls.
+    pub messages: u64,
+    /// Bytes sent to peers, or that the rank gave to collective calls.
+    pub sent: u64,
+    /// Bytes received from peers by the same call there, or that the rank was given by collective calls.
+    pub received: u64,
+}
+
+/// Counts traffic of a call.
+pub fn count(call: Call, traffic: CallTraffic) {
+    CALLS.with_borrow_mut(|calls| {
+        let all = calls.entry(call).or_default();
+        all.messages += traffic.messages;
+        all.sent += traffic.sent;
+        all.received += traffic.received;
+    });
+}
+
+/// The traffic of this thread's rank so far, by call.
+pub fn calls() -> BTreeMap<Call, CallTraffic> {
+    CALLS.with_borrow(Clone::clone)
 }
 
 /// Time and messages of a virtual rank so far.

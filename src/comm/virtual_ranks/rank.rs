@@ -4,9 +4,10 @@
 //! doi:10.1177/1094342005051521).
 
 use std::ops::Range;
+use std::panic::Location;
 use std::sync::Arc;
 
-use super::clock::{Clock, VirtualTime};
+use super::clock::{CallTraffic, Clock, VirtualTime, count};
 use super::world::{Group, Letter, Tag, Ticket, World};
 use super::{Computing, Machine};
 
@@ -66,12 +67,22 @@ impl Rank {
     }
 
     /// Sends bytes in `messages` messages; returns at once.
+    #[track_caller]
     pub fn send(&self, to: usize, tag: Tag, bytes: &[u8], messages: u64) {
+        let call = Location::caller();
         Clock::with(|clock| {
-            let left = clock.send(messages, bytes.len() as u64, self.machine.bandwidth);
+            let sent = bytes.len() as u64;
+            let left = clock.send(messages, sent, self.machine.bandwidth);
+            let traffic = CallTraffic {
+                messages,
+                sent,
+                received: 0,
+            };
+            count(call, traffic);
             let letter = Letter {
                 bytes: bytes.to_vec(),
                 arrival: left + self.machine.latency,
+                call,
             };
             self.world.send(self.group, self.number, to, tag, letter);
         });
@@ -87,19 +98,27 @@ impl Rank {
         Clock::with(|clock| {
             let letter = self.world.receive(self.number, ticket);
             clock.wait(letter.arrival);
+            let traffic = CallTraffic {
+                received: letter.bytes.len() as u64,
+                ..CallTraffic::default()
+            };
+            count(letter.call, traffic);
             letter.bytes
         })
     }
 
     /// Waits for all ranks.
+    #[track_caller]
     pub fn barrier(&self) {
-        self.meet(self.tree(1.0, 0.0), |_| {});
+        self.meet(self.tree(1.0, 0.0), [0; 2], |_| {});
     }
 
     /// Combines words with those of all ranks, in any order: `combine` adds the second ones to the first.
+    #[track_caller]
     pub fn reduce(&self, words: &mut [u64], combine: impl Fn(&mut [u64], &[u64])) {
-        let cost = self.tree(1.0, size_of_val(words) as f64);
-        let all = self.meet(cost, |all| {
+        let bytes = size_of_val(words);
+        let cost = self.tree(1.0, bytes as f64);
+        let all = self.meet(cost, [bytes; 2], |all| {
             if all.is_empty() {
                 all.extend_from_slice(words);
                 return;
@@ -111,10 +130,12 @@ impl Rank {
     }
 
     /// Joins the words of all ranks in their order.
+    #[track_caller]
     pub fn all_gather(&self, words: &[u64], joined: &mut [u64]) {
         let others = (self.size() - 1) * size_of_val(words);
         let cost = self.tree(1.0, 0.0) + others as f64 / self.machine.bandwidth;
-        let all = self.meet(cost, |all| {
+        let bytes = [words, joined].map(size_of_val);
+        let all = self.meet(cost, bytes, |all| {
             all.resize(joined.len(), 0);
             let first = self.number * words.len();
             all[first..first + words.len()].copy_from_slice(words);
@@ -123,10 +144,11 @@ impl Rank {
     }
 
     /// Gives each rank its word of this rank's, and this rank those of all.
+    #[track_caller]
     pub fn all_to_all(&self, sends: &[u64], receives: &mut [u64]) {
         let size = self.size();
         let cost = self.tree(1.0, 0.5 * size_of_val(sends) as f64);
-        let all = self.meet(cost, |all| {
+        let all = self.meet(cost, [size_of_val(sends); 2], |all| {
             all.resize(size * size, 0);
             all[self.number * size..][..size].copy_from_slice(sends);
         });
@@ -136,6 +158,7 @@ impl Rank {
     }
 
     /// Sends all ranks the bytes of one, after their number.
+    #[track_caller]
     pub fn broadcast(&self, from: usize, bytes: &mut Vec<u8>) {
         let is_sender = from == self.number;
         let cost = if is_sender {
@@ -145,7 +168,8 @@ impl Rank {
         } else {
             0.0
         };
-        let all = self.meet(cost, |all| {
+        let sent = if is_sender { bytes.len() } else { 0 };
+        let all = self.meet(cost, [sent, 0], |all| {
             if is_sender {
                 all.push(bytes.len() as u64);
                 all.resize(1 + bytes.len().div_ceil(8), 0);
@@ -156,12 +180,26 @@ impl Rank {
             let length = usize::try_from(all[0]).expect("a length fits memory");
             bytes.clear();
             bytes.extend_from_slice(&bytemuck::cast_slice(&all[1..])[..length]);
+            let traffic = CallTraffic {
+                received: length as u64,
+                ..CallTraffic::default()
+            };
+            count(Location::caller(), traffic);
         }
     }
 
     /// Meets all ranks, each of which adds to one list of words; returns it when all have. The clock
-    /// advances to the last arrival plus the largest cost (s) that any of them gives.
-    fn meet(&self, cost: f64, add: impl FnOnce(&mut Vec<u64>)) -> Arc<Vec<u64>> {
+    /// advances to the last arrival plus the largest cost (s) that any of them gives. `bytes` are those that the rank
+    /// gives and is given.
+    #[track_caller]
+    fn meet(&self, cost: f64, bytes: [usize; 2], add: impl FnOnce(&mut Vec<u64>)) -> Arc<Vec<u64>> {
+        let [sent, received] = bytes.map(|bytes| bytes as u64);
+        let traffic = CallTraffic {
+            messages: 1,
+            sent,
+            received,
+        };
+        count(Location::caller(), traffic);
         Clock::with(|clock| {
             let now = clock.time().now;
             let (words, end) = self.world.meet(self.group, self.number, now, cost, add);

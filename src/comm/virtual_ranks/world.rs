@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
+use super::clock::Call;
+
 /// Purpose of a message, which distinguishes messages between two ranks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tag {
@@ -41,6 +43,8 @@ pub struct Letter {
     pub bytes: Vec<u8>,
     /// Time of arrival (s).
     pub arrival: f64,
+    /// The call that has sent it.
+    pub call: Call,
 }
 
 /// Panic payload of a rank that ends because another one failed.

@@ -1,29 +1,86 @@
 //! Faces of the slabs so that counted work is even.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
 use rayon::prelude::*;
 
-use super::histogram::Histogram;
 use super::least::Least;
 use super::nested::{Cut, NestedSlabs, Slab};
 use super::rank_speed::RankSpeeds;
-use comm::Comm;
+use comm::{Comm, Receivers, Record, Relay, read_pod};
 use numerics::ordered::{disordered, ordered};
 
 /// Memory of the balance, kept from one to the next.
-#[derive(Debug, Default)]
+///
+/// Each slab has an owner, which alone sums what is counted in it and finds its faces: first by coarse planes, then by the
+/// fine planes of those coarse ones in which a face lies. A rank tells of planes where it has particles, and of no others.
 pub struct Balance {
-    /// Counted work.
-    pub histogram: Histogram,
     /// The slabs that a level cuts.
     slabs: Vec<Slab>,
+    /// Their planes.
+    spans: Vec<Span>,
     /// By particle the place of its slab there, or [`UNCUT`].
     places: Vec<u32>,
     /// How the level before cuts each of its slabs, the first of their parts in `parts`, and the places of those.
     cuts: Vec<(Cut, usize)>,
     parts: Vec<u32>,
-    /// Smallest and largest coordinates of each, as words.
+    /// Smallest and largest coordinates of this rank's particles in each, as words.
     ends: Least,
+    /// Work by planes, as threads count it.
+    counts: Vec<AtomicU64>,
+    tallies: Vec<Tally>,
+    relay: Relay<Tally>,
+    /// Keys of the coarse planes with particles of this rank in which faces lie.
+    marked: Vec<u64>,
+    /// Faces of the slabs that this rank owns, in the order of slabs and positions.
+    sought: Vec<Sought>,
+    /// Faces of a level, as bits.
+    faces: Vec<u64>,
 }
+
+/// The planes of a slab that is cut.
+#[derive(Debug, Clone, Copy, Default)]
+struct Span {
+    /// Position of the lowest plane (m).
+    lower: f64,
+    /// From fine plane to fine plane (m).
+    width: f64,
+    /// Number of coarse planes.
+    coarse: usize,
+    /// The first of its coarse planes, and the first of its faces, of those of all slabs.
+    first: usize,
+    first_face: usize,
+}
+
+/// What is told of a slab, by its place in the upper half of the key.
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Tally {
+    key: u64,
+    value: u64,
+}
+
+/// A face to be found in a coarse plane.
+#[derive(Debug, Clone, Copy)]
+struct Sought {
+    /// Of the coarse plane.
+    key: u64,
+    /// Its number.
+    face: usize,
+    /// Work below the plane, and below the face.
+    below: u64,
+    wanted: u64,
+}
+
+/// Coarse planes for each part of a slab, and fine ones for each coarse one.
+const COARSE: usize = 32;
+const FINE: usize = 256;
+
+/// Bit of the work of a plane that has a face.
+const MARK: u64 = 1 << 63;
+
+/// Keys from here on, less the slab, tell the shares of its parts.
+const SHARES: u64 = 1 << 31;
 
 /// The mean work of all particles over what one counts at least, so that no rank owns much more than so many even
 /// shares because its own take little work: what a rank takes of memory goes by their number.
@@ -35,18 +92,97 @@ const UNCUT: u32 = u32::MAX;
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
 
+impl Record for Tally {
+    fn key(&self) -> u64 {
+        self.key
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(bytemuck::bytes_of(self));
+    }
+
+    fn read(bytes: &mut &[u8]) -> Self {
+        read_pod(bytes)
+    }
+}
+
+impl Tally {
+    fn new(place: usize, what: u64, value: u64) -> Self {
+        let key = key(place, what);
+        Self { key, value }
+    }
+
+    /// The place of its slab.
+    fn place(&self) -> usize {
+        usize::try_from(self.key >> 32).unwrap_or(usize::MAX)
+    }
+
+    /// What it tells of its slab.
+    fn what(&self) -> u64 {
+        self.key & u64::from(u32::MAX)
+    }
+}
+
+fn key(place: usize, what: u64) -> u64 {
+    (place as u64) << 32 | what
+}
+
+impl Span {
+    /// The fine plane of a coordinate (m).
+    #[inline]
+    fn plane(&self, x: f64) -> usize {
+        let plane = (x - self.lower) / self.width;
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "clamped"
+        )]
+        let plane = plane.clamp(0.0, (self.coarse * FINE - 1) as f64) as usize;
+        plane
+    }
+
+    /// Sets the ends (m).
+    #[allow(clippy::cast_precision_loss, reason = "few planes")]
+    fn reach(&mut self, lower: f64, upper: f64) {
+        self.lower = lower;
+        self.width = ((upper - lower) / (self.coarse * FINE) as f64).max(f64::MIN_POSITIVE);
+    }
+}
+
+impl Default for Balance {
+    fn default() -> Self {
+        Self {
+            slabs: Vec::new(),
+            spans: Vec::new(),
+            places: Vec::new(),
+            cuts: Vec::new(),
+            parts: Vec::new(),
+            ends: Least::default(),
+            counts: Vec::new(),
+            tallies: Vec::new(),
+            relay: Relay::new(Receivers::OwnersByUpperHalf),
+            marked: Vec::new(),
+            sought: Vec::new(),
+            faces: Vec::new(),
+        }
+    }
+}
+
 impl Balance {
     /// Moves the faces of `slabs` for owned particles at `positions` (m) with counted `work`, so that
     /// each rank gets its share by `rank_speeds`, level by level. A particle counts the mean work over [`MOST_UNEVEN`]
-    /// at least. Slabs without particles keep their faces. Collective.
+    /// at least. Slabs without particles keep their faces. Gives the seconds that it has taken since all ranks had
+    /// begun. Collective.
     pub fn cut(
         &mut self,
         comm: &Comm,
         slabs: &mut NestedSlabs,
         (positions, work): (&[[f64; 3]], &[u32]),
         rank_speeds: &RankSpeeds,
-    ) {
+    ) -> f64 {
         let floor = floor(comm, work);
+        let begun = comm.seconds();
         self.slabs.clear();
         self.slabs.extend(Some(slabs.whole()).filter(Slab::is_cut));
         self.places.clear();
@@ -58,21 +194,36 @@ impl Balance {
             if self.slabs.is_empty() {
                 break;
             }
-            self.count(comm, slabs, level, (positions, work, floor));
-            self.split(slabs, rank_speeds);
+            let axis = slabs.axis(level);
+            self.find_ends(comm, positions, axis);
+            // Who stands for other ranks too has all of them alike.
+            let share = (comm.size() == slabs.ranks()).then(|| rank_speeds.share());
+            self.look_coarsely(comm, (positions, axis), |i| work[i].max(floor), share);
+            self.look_finely(comm, (positions, axis), |i| work[i].max(floor));
+            comm.min_u64(&mut self.faces);
+            let places = self.slabs.iter().flat_map(|slab| slab.cut().places());
+            for (place, &bits) in places.zip(&self.faces) {
+                if bits != u64::MAX {
+                    slabs.faces_mut()[place] = f64::from_bits(bits);
+                }
+            }
         }
+        comm.seconds() - begun
     }
 
-    /// Counts all work, that of a particle at least `floor`, in the slabs that are cut by a level, by planes normal to
-    /// its axis. Collective.
-    fn count(
-        &mut self,
-        comm: &Comm,
-        slabs: &NestedSlabs,
-        level: usize,
-        (positions, work, floor): (&[[f64; 3]], &[u32], u32),
-    ) {
-        let (ranks, axis) = (slabs.ranks(), slabs.axis(level));
+    /// Finds between which ends the particles of each slab are, of those that this rank has some of or owns.
+    /// Collective.
+    fn find_ends(&mut self, comm: &Comm, positions: &[[f64; 3]], axis: usize) {
+        self.spans.clear();
+        let mut next = Span::default();
+        for slab in &self.slabs {
+            next.coarse = COARSE * slab.cut().parts();
+            self.spans.push(next);
+            next.first += next.coarse;
+            next.first_face += slab.cut().parts() - 1;
+        }
+        self.faces.clear();
+        self.faces.resize(next.first_face, u64::MAX);
         self.ends.begin(2 * self.slabs.len());
         let (ends, places) = (&self.ends, &self.places);
         let tasks = positions.par_chunks(SHARE).zip(places.par_chunks(SHARE));
@@ -89,33 +240,128 @@ impl Balance {
             }
             tell_ends(ends, run);
         });
-        self.ends.join(comm);
-        let words = self.ends.words();
-        let ends = words.chunks_exact(2).map(ends_of);
-        if level == 0 {
-            let (lower, upper) = ends_of(words);
-            self.histogram.reset(lower, upper, ranks);
-        } else {
-            let cuts = self.slabs.iter().map(|slab| slab.ranks().len());
-            self.histogram.reset_each(ends.zip(cuts), ranks);
+        let tallies = &mut self.tallies;
+        tallies.clear();
+        for (place, ends) in self.ends.here().chunks_exact(2).enumerate() {
+            if ends[0] != u64::MAX {
+                tallies.extend([0, 1].map(|k| Tally::new(place, k as u64, ends[k])));
+            }
         }
-        self.histogram.add_all(positions.len(), |i| {
-            let work = u64::from(work[i].max(floor));
-            (places[i] != UNCUT).then(|| (places[i] as usize, positions[i][axis], work))
-        });
-        self.histogram.sum(comm);
+        let join = |all: &mut Tally, one: &Tally| all.value = all.value.min(one.value);
+        set_ends(&mut self.spans, self.relay.send(comm, tallies, join));
+        self.relay.come_back(comm, tallies);
+        set_ends(&mut self.spans, tallies);
     }
 
-    /// Cuts each slab that has particles.
-    fn split(&self, slabs: &mut NestedSlabs, rank_speeds: &RankSpeeds) {
-        let ranks = slabs.ranks();
-        for (place, slab) in self.slabs.iter().enumerate() {
-            let (lower, upper) = ends_of(&self.ends.words()[2 * place..]);
-            if lower <= upper {
-                split_slab(&self.histogram, (place, *slab), slabs.faces_mut(), |rank| {
-                    rank_speeds.below(rank, ranks)
-                });
+    /// Finds the coarse planes in which the faces lie, and what is below each of these, of the slabs that this rank owns;
+    /// and the planes of this rank's particles among those. Each rank may tell its `share`. Collective.
+    fn look_coarsely(
+        &mut self,
+        comm: &Comm,
+        (positions, axis): (&[[f64; 3]], usize),
+        work: impl Fn(usize) -> u32 + Sync,
+        share: Option<u64>,
+    ) {
+        let (spans, places) = (&self.spans, &self.places);
+        let count = spans.last().map_or(0, |span| span.first + span.coarse);
+        count_all(&mut self.counts, count, positions.len(), |i| {
+            let span = spans.get(places[i] as usize)?;
+            let plane = span.plane(positions[i][axis]) / FINE;
+            Some((span.first + plane, work(i)))
+        });
+        let tallies = &mut self.tallies;
+        tallies.clear();
+        for (place, span) in spans.iter().enumerate() {
+            let counts = &mut self.counts[span.first..span.first + span.coarse];
+            for (plane, count) in (0..).zip(counts) {
+                tallies.extend(told(place, plane, count));
             }
+        }
+        let rank = comm.rank();
+        let mine = self
+            .slabs
+            .iter()
+            .position(|slab| slab.ranks().contains(&rank));
+        if let (Some(share), Some(place)) = (share, mine) {
+            let part = self.slabs[place].cut().part_of(rank);
+            tallies.push(Tally::new(place, SHARES + part as u64, share));
+        }
+        self.sought.clear();
+        let all = self.relay.send(comm, tallies, add);
+        for told in all.chunk_by_mut(|a, b| a.place() == b.place()) {
+            let place = told[0].place();
+            let (planes, shares) = told.split_at_mut(told.partition_point(|of| of.what() < SHARES));
+            let faces = &mut self.faces[spans[place].first_face..];
+            seek(
+                self.slabs[place],
+                (planes, shares),
+                |part, found| match found {
+                    Some(found) => self.sought.push(Sought {
+                        face: spans[place].first_face + part - 1,
+                        ..found
+                    }),
+                    None => faces[part - 1] = f64::INFINITY.to_bits(),
+                },
+            );
+        }
+        self.relay.come_back(comm, tallies);
+        self.marked.clear();
+        let marked = tallies
+            .iter()
+            .filter(|of| of.what() < SHARES && of.value > 0);
+        self.marked.extend(marked.map(|of| of.key));
+    }
+
+    /// Finds the faces of the slabs that this rank owns. Collective.
+    fn look_finely(
+        &mut self,
+        comm: &Comm,
+        (positions, axis): (&[[f64; 3]], usize),
+        work: impl Fn(usize) -> u32 + Sync,
+    ) {
+        let (spans, places, marked) = (&self.spans, &self.places, &self.marked);
+        let count = FINE * marked.len();
+        count_all(&mut self.counts, count, positions.len(), |i| {
+            let span = spans.get(places[i] as usize)?;
+            let plane = span.plane(positions[i][axis]);
+            let coarse = key(places[i] as usize, (plane / FINE) as u64);
+            let at = marked.binary_search(&coarse).ok()?;
+            Some((FINE * at + plane % FINE, work(i)))
+        });
+        let tallies = &mut self.tallies;
+        tallies.clear();
+        for (&key, counts) in marked.iter().zip(self.counts.chunks_exact_mut(FINE)) {
+            let coarse = Tally { key, value: 0 };
+            let planes = FINE as u64 * coarse.what()..;
+            for (plane, count) in planes.zip(counts) {
+                tallies.extend(told(coarse.place(), plane, count));
+            }
+        }
+        let all = &*self.relay.send(comm, tallies, add);
+        for sought in &self.sought {
+            let coarse = Tally {
+                key: sought.key,
+                value: 0,
+            };
+            let (place, plane) = (coarse.place(), FINE as u64 * coarse.what());
+            let [from, to] = [plane, plane + FINE as u64].map(|plane| {
+                let key = key(place, plane);
+                all.partition_point(|of| of.key < key)
+            });
+            let (mut at, mut below) = (plane, sought.below);
+            for of in &all[from..to] {
+                let over = (below + of.value).checked_sub(sought.wanted);
+                // A face goes to whichever side of this plane is nearer to its share.
+                let under = sought.wanted.saturating_sub(below);
+                at = of.what() + u64::from(over.is_none_or(|over| over <= under));
+                below += of.value;
+                if over.is_some() {
+                    break;
+                }
+            }
+            #[allow(clippy::cast_precision_loss, reason = "few planes")]
+            let face = spans[place].lower + spans[place].width * at as f64;
+            self.faces[sought.face] = face.to_bits();
         }
     }
 
@@ -151,11 +397,103 @@ impl Balance {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        self.histogram.memory()
-            + size_of::<Slab>() * self.slabs.capacity()
+        size_of::<Slab>() * self.slabs.capacity()
+            + size_of::<Span>() * self.spans.capacity()
             + 4 * (self.places.capacity() + self.parts.capacity())
             + size_of::<(Cut, usize)>() * self.cuts.capacity()
             + self.ends.memory()
+            + 8 * (self.counts.capacity() + self.marked.capacity() + self.faces.capacity())
+            + size_of::<Tally>() * self.tallies.capacity()
+            + self.relay.memory()
+            + size_of::<Sought>() * self.sought.capacity()
+    }
+}
+
+fn add(all: &mut Tally, one: &Tally) {
+    all.value += one.value;
+}
+
+/// Sets the ends of slabs by what is told of them, a pair for each.
+fn set_ends(spans: &mut [Span], told: &[Tally]) {
+    for ends in told.chunks_exact(2) {
+        let [lower, upper] = [ends[0].value, !ends[1].value].map(disordered);
+        spans[ends[0].place()].reach(lower, upper);
+    }
+}
+
+/// Counts what `of` tells of each of the elements `0..n`, a place and work, in so many places. All threads count.
+fn count_all(
+    counts: &mut Vec<AtomicU64>,
+    places: usize,
+    n: usize,
+    of: impl Fn(usize) -> Option<(usize, u32)> + Sync,
+) {
+    counts.clear();
+    counts.resize_with(places, AtomicU64::default);
+    let all = (0..n).into_par_iter().with_min_len(SHARE).filter_map(&of);
+    // same bits in any order: whole numbers
+    all.for_each(|(place, work)| {
+        counts[place].fetch_add(work.into(), Relaxed);
+    });
+}
+
+/// What is told of a plane where something was counted.
+fn told(place: usize, plane: u64, count: &mut AtomicU64) -> Option<Tally> {
+    let count = *count.get_mut();
+    (count > 0).then(|| Tally::new(place, plane, count))
+}
+
+/// Seeks the faces of a slab, given the work in its coarse planes and the shares of its parts, if these are known: else
+/// all ranks have the same. Marks the planes that have faces, and no others; `emit` takes the part above each face and where
+/// the face is, if not above all.
+fn seek(
+    slab: Slab,
+    (planes, shares): (&mut [Tally], &[Tally]),
+    mut emit: impl FnMut(usize, Option<Sought>),
+) {
+    if planes.is_empty() {
+        return;
+    }
+    let cut = slab.cut();
+    let share = |part: usize| match shares.get(part) {
+        Some(told) => told.value,
+        None => cut.part(part).ranks().len() as u64,
+    };
+    let total: u64 = planes.iter().map(|of| of.value).sum();
+    let all: u64 = (0..cut.parts()).map(share).sum();
+    let (mut at, mut below, mut lower) = (0, 0, 0);
+    for part in 1..cut.parts() {
+        lower += share(part - 1);
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            clippy::cast_precision_loss,
+            reason = "a part of the total"
+        )]
+        let wanted = (lower as f64 / all as f64 * total as f64) as u64;
+        let work = |of: &Tally| of.value & !MARK;
+        while below + work(&planes[at]) < wanted && at + 1 < planes.len() {
+            below += work(&planes[at]);
+            at += 1;
+        }
+        let plane = &mut planes[at];
+        let is_found = below + work(plane) >= wanted;
+        if is_found {
+            plane.value |= MARK;
+        }
+        let key = plane.key;
+        emit(
+            part,
+            is_found.then_some(Sought {
+                key,
+                face: 0,
+                below,
+                wanted,
+            }),
+        );
+    }
+    for plane in planes {
+        plane.value &= MARK;
     }
 }
 
@@ -175,33 +513,6 @@ fn tell_ends(all: &Least, (place, ends): (u32, [u64; 2])) {
     if place != UNCUT {
         all.lower(2 * place as usize, ends);
     }
-}
-
-/// Smallest and largest coordinate (m), from words.
-fn ends_of(words: &[u64]) -> (f64, f64) {
-    if words[0] == u64::MAX {
-        return (f64::INFINITY, f64::NEG_INFINITY);
-    }
-    (disordered(words[0]), disordered(!words[1]))
-}
-
-/// Sets the faces of a slab so that the work counted at a place of a histogram is split as the part of
-/// the whole that ranks below one are to have.
-pub(super) fn split_slab(
-    histogram: &Histogram,
-    (place, slab): (usize, Slab),
-    faces: &mut [f64],
-    below: impl Fn(usize) -> f64,
-) {
-    let ranks = slab.ranks();
-    let (first, all) = (below(ranks.start), below(ranks.end) - below(ranks.start));
-    let mut places = slab.cut().places();
-    let parts = slab.cut().places();
-    let parts = parts.map(|face| (below(face + 1) - first) / all);
-    histogram.split(place, parts, |face| {
-        let place = places.next().expect("a place for each face");
-        faces[place] = face;
-    });
 }
 
 #[cfg(test)]
@@ -242,6 +553,39 @@ mod tests {
             &RankSpeeds::default(),
         );
         assert_eq!(slabs, before);
+    }
+
+    /// Ranks that hold any of the particles find the faces that one process finds, which has all.
+    #[test]
+    fn any_ranks_find_the_same_faces() {
+        let positions: Vec<[f64; 3]> = (0..6000_u32)
+            .map(|k| [7919, 104_729, 1_299_709].map(|p: u32| f64::from(k.wrapping_mul(p) % 997)))
+            .collect();
+        let work: Vec<u32> = (0..6000).map(|k| k % 7).collect();
+        for ranks in [2, 3, 12, 30] {
+            for levels in 1..=3 {
+                let begun = || NestedSlabs::on_first([1, 2, 0], levels, ranks);
+                let mut alone = begun();
+                let (even, all) = (RankSpeeds::default(), (&*positions, &*work));
+                Balance::default().cut(&Comm::solo(), &mut alone, all, &even);
+                let found = comm::virtual_ranks(ranks, comm::Machine::IDEAL, |comm| {
+                    let mine = |i: &usize| (i * i / 7) % ranks == comm.rank();
+                    let mine: Vec<usize> = (0..positions.len()).filter(mine).collect();
+                    let positions: Vec<[f64; 3]> = mine.iter().map(|&i| positions[i]).collect();
+                    let work: Vec<u32> = mine.iter().map(|&i| work[i]).collect();
+                    let mut slabs = begun();
+                    let mut balance = Balance::default();
+                    for _ in 0..2 {
+                        balance.cut(comm, &mut slabs, (&positions, &work), &even);
+                    }
+                    slabs
+                });
+                assert!(
+                    found.iter().all(|found| *found == alone),
+                    "{ranks} {levels}"
+                );
+            }
+        }
     }
 
     /// One process cuts as many would: each rank gets its share, whatever the levels.

@@ -145,6 +145,7 @@ impl Halo {
     }
 
     /// [`Self::post_motion`] and [`Self::finish_motion`]. Collective.
+    #[track_caller]
     pub fn exchange_motion(
         &mut self,
         comm: &Comm,
@@ -162,6 +163,7 @@ impl Halo {
     }
 
     /// [`Self::post`] and [`Self::finish`] of fields alone. Collective.
+    #[track_caller]
     pub fn exchange(&mut self, comm: &Comm, particles: &mut ParticleStore, phase: HaloPhase) {
         self.post(comm, particles, phase, None);
         self.finish(particles, phase, None);
@@ -220,6 +222,7 @@ impl Halo {
 
     /// Gives halo particles the values of their owners: those of this rank's particles stand first
     /// in `values`, those of halo particles after them. Collective.
+    #[track_caller]
     pub fn exchange_values<T: bytemuck::Pod + Sync>(&mut self, comm: &Comm, values: &mut [T]) {
         let size = size_of::<T>();
         let (chosen, sent) = (&self.chosen, &*values);

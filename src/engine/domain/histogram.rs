@@ -1,9 +1,6 @@
 //! Work counted by fine planes.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-use rayon::prelude::*;
 
 use comm::Comm;
 
@@ -12,8 +9,6 @@ use comm::Comm;
 pub struct Histogram {
     spans: Vec<Span>,
     counts: Vec<u64>,
-    /// Work that threads add to the counts.
-    tallies: Vec<AtomicU64>,
 }
 
 /// The planes of one slab.
@@ -44,8 +39,6 @@ impl Span {
     }
 }
 
-/// Elements that a task counts at least.
-const SHARE: usize = 4096;
 /// Fine planes for each rank.
 const BINS_PER_RANK: usize = 2048;
 /// Fine planes of a whole level at most, which cuts one slab or more of them.
@@ -101,30 +94,6 @@ impl Histogram {
     pub fn add_to(&mut self, slab: usize, x: f64, work: u64) {
         let bin = self.spans[slab].bin(x);
         self.counts[bin] += work;
-    }
-
-    /// Counts what `of` tells of each of the elements `0..n`: slab, coordinate (m) and work. All threads count.
-    pub fn add_all(&mut self, n: usize, of: impl Fn(usize) -> Option<(usize, f64, u64)> + Sync) {
-        let Self {
-            spans,
-            counts,
-            tallies,
-        } = self;
-        tallies.resize_with(counts.len(), AtomicU64::default);
-        let all = (0..n).into_par_iter().with_min_len(SHARE).filter_map(&of);
-        // same bits in any order: whole numbers
-        all.for_each(|(slab, x, work)| {
-            tallies[spans[slab].bin(x)].fetch_add(work, Relaxed);
-        });
-        let counted = counts.par_iter_mut().zip(tallies).with_min_len(SHARE);
-        counted.for_each(|(count, tally)| *count += std::mem::take(tally.get_mut()));
-    }
-
-    /// Bytes allocated.
-    #[must_use]
-    pub fn memory(&self) -> usize {
-        8 * (self.counts.capacity() + self.tallies.capacity())
-            + size_of::<Span>() * self.spans.capacity()
     }
 
     /// The work of all ranks. Collective.

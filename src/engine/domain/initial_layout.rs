@@ -1,6 +1,6 @@
 //! Positions of the particles of a case before its first step, and their ranks.
 
-use super::balance::{Balance, split_slab};
+use super::balance::Balance;
 use super::choice::Choice;
 use super::forecast::{Forecast, share_of};
 use super::histogram::Histogram;
@@ -107,10 +107,10 @@ impl InitialLayout {
     ) -> NestedSlabs {
         let levels = levels.or_else(|| self.known_levels(case, ranks));
         if levels == Some(1) || ranks == 1 {
-            return self.flat_slabs(case, comm, ranks, balance);
+            return self.flat_slabs(case, comm, ranks);
         }
         // Each process counts for all what one slab has.
-        let processes = self.flat_slabs(case, comm, comm.size(), balance);
+        let processes = self.flat_slabs(case, comm, comm.size());
         let brick = processes.region(comm.rank());
         let (mut places, mut reach) = (Vec::new(), Vec::new());
         for body in &case.bodies {
@@ -147,22 +147,21 @@ impl InitialLayout {
     }
 
     /// The same of one level. Collective.
-    fn flat_slabs(
-        &self,
-        case: &Case,
-        comm: &Comm,
-        ranks: usize,
-        balance: &mut Balance,
-    ) -> NestedSlabs {
+    fn flat_slabs(&self, case: &Case, comm: &Comm, ranks: usize) -> NestedSlabs {
         let mut slabs = NestedSlabs::on_first(self.axes, 1, ranks);
         if ranks == 1 {
             return slabs;
         }
-        self.count(case, comm, ranks, &mut balance.histogram);
-        balance.histogram.sum(comm);
-        let (whole, even) = (slabs.whole(), RankSpeeds::default());
-        split_slab(&balance.histogram, (0, whole), slabs.faces_mut(), |rank| {
-            even.below(rank, ranks)
+        let mut histogram = Histogram::default();
+        self.count(case, comm, ranks, &mut histogram);
+        histogram.sum(comm);
+        #[allow(clippy::cast_precision_loss, reason = "few ranks")]
+        let parts = (1..ranks).map(|rank| rank as f64 / ranks as f64);
+        let mut faces = slabs.faces_mut().iter_mut();
+        histogram.split(0, parts, |face| {
+            if let Some(place) = faces.next() {
+                *place = face;
+            }
         });
         slabs
     }

@@ -27,11 +27,17 @@ impl Least {
         }
     }
 
-    /// Joins what all ranks were told. Collective.
-    pub(super) fn join(&mut self, comm: &Comm) {
+    /// What this rank was told: the words, the largest there is where nobody told any.
+    pub(super) fn here(&mut self) -> &[u64] {
         self.words.clear();
         let found = self.found.iter_mut().map(|word| *word.get_mut());
         self.words.extend(found);
+        &self.words
+    }
+
+    /// Joins what all ranks were told. Collective.
+    pub(super) fn join(&mut self, comm: &Comm) {
+        self.here();
         comm.min_u64(&mut self.words);
     }
 

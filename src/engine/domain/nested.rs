@@ -137,7 +137,7 @@ impl Cut {
     }
 
     /// The part of a rank.
-    fn part_of(&self, rank: usize) -> usize {
+    pub(super) fn part_of(&self, rank: usize) -> usize {
         let within = rank - self.slab.first;
         let longer = self.more * (self.each + 1);
         if within < longer {

@@ -27,6 +27,7 @@ pub struct Partition {
     every: u64,
     /// Loss of steps since the last balance by unevenness.
     loss: Loss,
+    price: Price,
     /// Counted work of this rank since its speed was measured.
     done: u64,
     /// Largest reach of the particles of all ranks when they last changed ranks (m).
@@ -36,8 +37,43 @@ pub struct Partition {
 /// Regular balances from one look at levels and axes to the next.
 const REVISED: u64 = 8;
 
-/// Cost of a balance, in steps.
-const PRICE: f64 = 0.1;
+/// Cost of a balance in steps, at least, with the moves that follow it, and at most.
+const PRICES: [f64; 2] = [0.1, 25.0];
+
+/// Cost of a balance, as it is measured.
+#[derive(Debug, Clone, Copy)]
+struct Price {
+    /// In steps, the same on all ranks.
+    steps: f64,
+    /// Step and time (s) at which the last balance ended.
+    ended: Option<(u64, f64)>,
+}
+
+impl Price {
+    const UNKNOWN: Self = Self {
+        steps: PRICES[0],
+        ended: None,
+    };
+
+    /// Takes the seconds that a balance at a step has taken, of the steps since the last one. The least that any rank has
+    /// measured counts: no short delay of one does. Collective.
+    fn measure(&mut self, comm: &Comm, step: u64, seconds: f64) {
+        let now = comm.seconds();
+        let ended = self.ended.replace((step, now));
+        let Some((last, since)) = ended.filter(|ended| ended.0 < step) else {
+            return;
+        };
+        #[allow(clippy::cast_precision_loss, reason = "a number of steps")]
+        let of_step = (now - seconds - since) / (step - last) as f64;
+        // Where the clock stands still nothing is measured.
+        let mut price = [(seconds / of_step).max(0.0).to_bits()];
+        comm.min_u64(&mut price);
+        let price = f64::from_bits(price[0]);
+        if price > 0.0 {
+            self.steps = 0.5 * (self.steps + price.clamp(PRICES[0], PRICES[1]));
+        }
+    }
+}
 
 /// Time that ranks have waited for the busiest one since the last balance, as its work is counted.
 #[derive(Debug, Clone, Copy)]
@@ -88,6 +124,7 @@ impl Partition {
             migration: Migration::default(),
             every: case.domain.balance_every,
             loss: Loss::NONE,
+            price: Price::UNKNOWN,
             done: 0,
             farthest: 0.0,
         }
@@ -118,7 +155,7 @@ impl Partition {
     /// the last balance is worth one.
     #[must_use]
     pub fn is_due(&self, step: u64) -> bool {
-        self.is_regular(step) || self.every != 0 && self.loss.steps > PRICE
+        self.is_regular(step) || self.every != 0 && self.loss.steps > self.price.steps
     }
 
     /// The work that this rank has counted in a step, and the load that it is for one of its speed.
@@ -130,7 +167,7 @@ impl Partition {
         // same bits in any order: whole numbers
         let work = particles.work.par_iter().map(|&w| u64::from(w)).sum();
         self.done += work;
-        [work, self.rank_speeds.load(work, comm.rank(), comm.size())]
+        [work, self.rank_speeds.load(work)]
     }
 
     /// Takes the work of all ranks in a step, and the largest load.
@@ -160,7 +197,8 @@ impl Partition {
             let done = std::mem::take(&mut self.done);
             self.rank_speeds.measure(comm, done, busy);
         }
-        self.cut(comm, particles);
+        let seconds = self.cut(comm, particles);
+        self.price.measure(comm, step, seconds);
         if step > 0 && step.is_multiple_of(REVISED * self.every) {
             let before = (self.slabs.levels(), self.slabs.axes());
             self.revise(comm, particles, reach);
@@ -210,11 +248,11 @@ impl Partition {
         self.migration = Migration::default();
     }
 
-    fn cut(&mut self, comm: &Comm, particles: &ParticleStore) {
+    fn cut(&mut self, comm: &Comm, particles: &ParticleStore) -> f64 {
         let positions = &particles.position[..particles.owned()];
         let all = (positions, particles.work.as_slice());
         self.balance
-            .cut(comm, &mut self.slabs, all, &self.rank_speeds);
+            .cut(comm, &mut self.slabs, all, &self.rank_speeds)
     }
 
     /// Sends every particle to the rank whose slab it is in, among the peers of the last `halo`
@@ -249,7 +287,6 @@ impl Partition {
     pub fn memory(&self) -> usize {
         self.migration.memory()
             + self.balance.memory()
-            + self.rank_speeds.memory()
             + self.choice.as_ref().map_or(0, Choice::memory)
             + 8 * self.slabs.faces().len()
     }

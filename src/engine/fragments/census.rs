@@ -1,6 +1,5 @@
 //! All fragments at one time.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -9,9 +8,9 @@ use super::fragment::Fragment;
 use super::labels::{Labels, Member};
 use super::links::link;
 use super::matter::{Matter, Rule, Surroundings, images};
-use super::sums::{BODIES, Moments, Sums};
+use super::sums::{Moments, Sums};
 use crate::domain::Halo;
-use comm::Comm;
+use comm::{Comm, Receivers, Record, Relay, read_pod};
 use model::SymmetryPlane;
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
 use particles::Mirrors;
@@ -85,26 +84,74 @@ pub fn find(
     let mut order: Vec<usize> = (0..matter.owned).collect();
     order.retain(|&i| members[i].as_ref().is_some_and(is_fragment));
     order.par_sort_unstable_by_key(|&i| (census.labels[i], i));
-    let mut words = Vec::new();
-    let found = segments(&order, &census.labels)
-        .into_par_iter()
+    let parts = segments(&order, &census.labels).into_par_iter();
+    let parts: Vec<(Member, Part)> = parts
         .map(|range| {
             let member = members[order[range.start]].expect("it is of a fragment");
-            let mut words = vec![u64::from(member.crosses), member.label, member.count];
-            words.push(member.planes.into());
-            let mut sums = sums_over(matter, &order[range]);
-            if member.crosses {
-                sums.write(&mut words);
-            } else {
-                words.extend(sums.values().map(f64::to_bits));
-            }
-            words
-        });
-    let found: Vec<Vec<u64>> = found.collect();
-    words.extend(found.iter().flatten());
-    labels.merger.gather(comm, &mut words);
-    census.fragments = read(&words, matter.bodies, (mirrors, rule.dimension));
+            let sums = sums_over(matter, &order[range]);
+            let part = Part {
+                label: member.label,
+                count: member.count,
+                planes: member.planes,
+                sums,
+            };
+            (member, part)
+        })
+        .collect();
+    let (crossing, whole): (Vec<_>, Vec<_>) =
+        parts.into_iter().partition(|(member, _)| member.crosses);
+    let mut crossing: Vec<Part> = crossing.into_iter().map(|(_, part)| part).collect();
+    // The owner of a label adds up what ranks have of it.
+    let mut owners = Relay::new(Receivers::Owners);
+    let joined = owners.send(comm, &mut crossing, |all, part| all.sums.merge(&part.sums));
+    let parts = whole.iter().map(|(_, part)| part).chain(&*joined);
+    let model = (mirrors, rule.dimension);
+    let mut fragments: Vec<Fragment> = parts.map(|part| part.fragment(model)).collect();
+    let mut root = Relay::new(Receivers::Root);
+    let fragments = root.send(comm, &mut fragments, |_, _| {});
+    fragments.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.label.cmp(&b.label)));
+    census.fragments = std::mem::take(fragments);
     census
+}
+
+/// What a rank has of a fragment, or some ranks have.
+#[derive(Clone)]
+struct Part {
+    label: u64,
+    /// Of the whole.
+    count: u64,
+    planes: u32,
+    sums: Sums,
+}
+
+impl Part {
+    fn fragment(&self, model: (&Mirrors, usize)) -> Fragment {
+        let values: Vec<f64> = self.sums.values().collect();
+        let moments = Moments::new(&values);
+        Fragment::new((self.label, self.count), self.planes, &moments, model)
+    }
+}
+
+impl Record for Part {
+    fn key(&self) -> u64 {
+        self.label
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        let words = [self.label, self.count, self.planes.into()];
+        bytes.extend_from_slice(bytemuck::cast_slice(&words));
+        self.sums.write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Self {
+        let [label, count, planes]: [u64; 3] = read_pod(bytes);
+        Self {
+            label,
+            count,
+            planes: u32::try_from(planes).unwrap_or_default(),
+            sums: Sums::read(bytes),
+        }
+    }
 }
 
 /// Finds all fragments of a model whose particles are all here.
@@ -151,40 +198,6 @@ fn sums_over(matter: &Matter, particles: &[usize]) -> Sums {
     let mut all = parts.next().expect("there are particles");
     parts.for_each(|part| all.merge(&part));
     all
-}
-
-/// The fragments that all ranks have written.
-fn read(words: &[u64], bodies: usize, model: (&Mirrors, usize)) -> Vec<Fragment> {
-    let mut words = words.iter().copied();
-    let mut fragments = Vec::new();
-    let mut crossing: BTreeMap<u64, (u64, u32, Sums)> = BTreeMap::new();
-    while let Some(crosses) = words.next() {
-        let mut word = || words.next().unwrap_or_default();
-        let (label, count) = (word(), word());
-        let planes = u32::try_from(word()).unwrap_or_default();
-        if crosses == 0 {
-            let values: Vec<f64> = (0..BODIES + bodies)
-                .map(|_| f64::from_bits(word()))
-                .collect();
-            let moments = Moments::new(&values);
-            fragments.push(Fragment::new((label, count), planes, &moments, model));
-            continue;
-        }
-        let sums = Sums::read(bodies, &mut words);
-        match crossing.get_mut(&label) {
-            Some((_, _, all)) => all.merge(&sums),
-            None => {
-                crossing.insert(label, (count, planes, sums));
-            }
-        }
-    }
-    for (label, (count, planes, sums)) in crossing {
-        let values: Vec<f64> = sums.values().collect();
-        let moments = Moments::new(&values);
-        fragments.push(Fragment::new((label, count), planes, &moments, model));
-    }
-    fragments.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.label.cmp(&b.label)));
-    fragments
 }
 
 /// Particles and masses of three kinds of matter, told apart by `kind`: fragments, dust, what is

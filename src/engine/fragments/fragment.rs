@@ -1,6 +1,7 @@
 //! A fragment: what its sums say of it (theory page "Fragments").
 
 use super::sums::Moments;
+use comm::{Record, read_pod};
 use numerics::principal::principal;
 use particles::Mirrors;
 
@@ -104,6 +105,48 @@ impl Fragment {
             (a * b).sqrt()
         } else {
             a
+        }
+    }
+}
+
+impl Record for Fragment {
+    fn key(&self) -> u64 {
+        self.label
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        let counts = [
+            self.label,
+            self.copies,
+            self.particles,
+            self.mass_of.len() as u64,
+        ];
+        bytes.extend_from_slice(bytemuck::cast_slice(&counts));
+        bytes.extend_from_slice(bytemuck::bytes_of(&self.mass));
+        for vector in [self.centre, self.velocity, self.spin, self.sizes] {
+            bytes.extend_from_slice(bytemuck::cast_slice(&vector));
+        }
+        bytes.extend_from_slice(bytemuck::cast_slice(&[
+            self.temperature,
+            self.plastic_strain,
+        ]));
+        bytes.extend_from_slice(bytemuck::cast_slice(&self.mass_of));
+    }
+
+    fn read(bytes: &mut &[u8]) -> Self {
+        let [label, copies, particles, bodies]: [u64; 4] = read_pod(bytes);
+        Self {
+            label,
+            copies,
+            particles,
+            mass: read_pod(bytes),
+            centre: read_pod(bytes),
+            velocity: read_pod(bytes),
+            spin: read_pod(bytes),
+            sizes: read_pod(bytes),
+            temperature: read_pod(bytes),
+            plastic_strain: read_pod(bytes),
+            mass_of: (0..bodies).map(|_| read_pod(bytes)).collect(),
         }
     }
 }

@@ -124,7 +124,7 @@ impl Labels {
             if let Some(row) = self.merger.of(set.label) {
                 *count = row.count;
                 let marks = u32::try_from(row.marks).unwrap_or(u32::MAX);
-                sets.rename(*root, row.label, marks);
+                sets.rename(*root, row.other, marks);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Exact sums over what hangs together: the same bits on any ranks and threads.
 
 use super::matter::Matter;
+use comm::read_pod;
 use numerics::exact_sum::{ExactSum, LIMBS};
 
 /// Pairs of axes of the second moments.
@@ -15,7 +16,7 @@ pub struct Sums {
 }
 
 /// Index of the first of the masses by body.
-pub const BODIES: usize = 20;
+const BODIES: usize = 20;
 
 /// Values of [`Sums`].
 #[derive(Debug, Clone)]
@@ -72,38 +73,34 @@ impl Sums {
         }
     }
 
-    /// Appends the sums to a message: for each a set of limbs that are not zero, and these.
-    pub fn write(&mut self, words: &mut Vec<u64>) {
-        for sum in &mut self.sums {
+    /// Appends the sums to a message: their number; for each a set of limbs that are not zero, and these.
+    pub fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(&(self.sums.len() as u64).to_ne_bytes());
+        for sum in &self.sums {
+            let mut sum = sum.clone();
             sum.normalise();
-            let mut set = 0_u128;
-            for (k, _) in sum
-                .limbs()
-                .iter()
-                .enumerate()
-                .filter(|(_, limb)| **limb != 0)
-            {
-                set |= 1 << k;
-            }
-            #[expect(clippy::cast_possible_truncation, reason = "halves")]
-            words.extend([set as u64, (set >> 64) as u64]);
-            let limbs = sum.limbs().iter().filter(|limb| **limb != 0);
-            words.extend(limbs.map(|limb| limb.cast_unsigned()));
+            let limbs = sum.limbs().iter().enumerate();
+            let limbs = limbs.filter(|(_, limb)| **limb != 0);
+            let set = limbs.clone().fold(0_u128, |set, (k, _)| set | 1 << k);
+            bytes.extend_from_slice(&set.to_ne_bytes());
+            limbs.for_each(|(_, limb)| bytes.extend_from_slice(&limb.to_ne_bytes()));
         }
     }
 
-    /// Reads what [`Self::write`] wrote.
-    pub fn read(bodies: usize, words: &mut impl Iterator<Item = u64>) -> Self {
-        let mut sums = Self::new(bodies);
-        for sum in &mut sums.sums {
-            let mut word = || words.next().unwrap_or_default();
-            let set = u128::from(word()) | u128::from(word()) << 64;
-            let limbs = sum.limbs_mut();
+    /// Takes what [`Self::write`] wrote from the start of a message.
+    pub fn read(bytes: &mut &[u8]) -> Self {
+        let count: u64 = read_pod(bytes);
+        let sums = (0..count).map(|_| {
+            let mut sum = ExactSum::new();
+            let set: u128 = read_pod(bytes);
             for k in (0..LIMBS).filter(|k| set >> k & 1 == 1) {
-                limbs[k] = word().cast_signed();
+                sum.limbs_mut()[k] = read_pod(bytes);
             }
+            sum
+        });
+        Self {
+            sums: sums.collect(),
         }
-        sums
     }
 
     /// The sums, each rounded once.
