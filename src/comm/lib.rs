@@ -12,7 +12,7 @@ mod waiting;
 
 pub use exchange::{Exchange, Peer, Traffic, pieces, read_pod};
 pub use joint::Joint;
-pub use relay::{Receivers, Record, Relay};
+pub use relay::{PlainRecord, Receivers, Record, Relay};
 pub use virtual_ranks::{Call, CallTraffic, Computing, Machine, VirtualTime, virtual_ranks};
 pub use waiting::waited;
 

@@ -21,6 +21,26 @@ pub trait Record: Clone {
     fn read(bytes: &mut &[u8]) -> Self;
 }
 
+/// A record that is sent as it lies in memory.
+pub trait PlainRecord: Pod {
+    /// As [`Record::key`].
+    fn key(&self) -> u64;
+}
+
+impl<T: PlainRecord> Record for T {
+    fn key(&self) -> u64 {
+        PlainRecord::key(self)
+    }
+
+    fn write(&self, bytes: &mut Vec<u8>) {
+        bytes.extend_from_slice(bytemuck::bytes_of(self));
+    }
+
+    fn read(bytes: &mut &[u8]) -> Self {
+        super::read_pod(bytes)
+    }
+}
+
 /// The ranks that receive records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Receivers {
@@ -280,17 +300,9 @@ mod tests {
         count: u64,
     }
 
-    impl Record for Count {
+    impl PlainRecord for Count {
         fn key(&self) -> u64 {
             self.key
-        }
-
-        fn write(&self, bytes: &mut Vec<u8>) {
-            bytes.extend_from_slice(bytemuck::bytes_of(self));
-        }
-
-        fn read(bytes: &mut &[u8]) -> Self {
-            super::super::read_pod(bytes)
         }
     }
 

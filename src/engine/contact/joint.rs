@@ -11,6 +11,8 @@
 //! opening, such that an area takes its energy (power law of exponent one for mixed modes; Camanho & Dávila 2002,
 //! NASA/TM-2002-211737, eqs 14 to 20). Each end holds half of a bond. What it lets go of becomes heat.
 
+use rayon::prelude::*;
+
 use super::force::{ContactStress, Receiver, TaskForces};
 use super::mode::{Scene, fill, for_each_chunk};
 use super::pair::{Between, Pair};
@@ -19,7 +21,8 @@ use model::{Case, ContactClass, Joint};
 use numerics::kernel::{FixedKernel, Kernel};
 use numerics::matrix::symmetric_adjugate;
 use numerics::vector::{dot, norm};
-use particles::Mirrors;
+use particles::neighbours::CHUNKS_AT_ONCE;
+use particles::{Mirrors, Scatter};
 
 /// Smoothing length of the bonds over that of contact, whose lists hold them until they have stretched by a ninth.
 const LENGTH: f64 = 0.9;
@@ -215,11 +218,18 @@ pub(super) fn measure(found: &mut Vec<Vec<Measured>>, scene: &mut Scene) {
                     .then_some(Measured { particle, damage })
             }));
         });
-        for &Measured { particle, damage } in found.iter().flatten() {
-            let field = &mut scene.particles.joint_damage[particle];
-            scene.particles.joint_growth[particle] += damage - *field;
-            *field = damage;
-        }
+        let particles = &mut *scene.particles;
+        let fields = [&mut particles.joint_damage, &mut particles.joint_growth];
+        let [all, growth] = fields.map(|field| Scatter::new(field));
+        let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
+        chunks
+            .flatten_iter()
+            .for_each(|&Measured { particle, damage }| {
+                // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+                let (before, growth) = unsafe { (all.slot(particle), growth.slot(particle)) };
+                *growth += damage - *before;
+                *before = damage;
+            });
     }
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::least::Least;
 use super::nested::{Cut, NestedSlabs, Slab};
 use super::rank_speed::RankSpeeds;
-use comm::{Comm, Receivers, Record, Relay, read_pod};
+use comm::{Comm, PlainRecord, Receivers, Relay};
 use numerics::ordered::{disordered, ordered};
 
 /// Memory of the balance, kept from one to the next.
@@ -92,17 +92,9 @@ const UNCUT: u32 = u32::MAX;
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
 
-impl Record for Tally {
+impl PlainRecord for Tally {
     fn key(&self) -> u64 {
         self.key
-    }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(bytemuck::bytes_of(self));
-    }
-
-    fn read(bytes: &mut &[u8]) -> Self {
-        read_pod(bytes)
     }
 }
 

@@ -7,7 +7,7 @@
 //! The owner of a class hears of it from all ranks by a [`Relay`]: no rank holds more than its share of labels, however many
 //! ranks have some of one.
 
-use comm::{Comm, Receivers, Record, Relay, read_pod};
+use comm::{Comm, PlainRecord, Receivers, Relay};
 use numerics::counter::split_mix;
 
 /// Facts of a rank about a label that crosses a face: that it is one with another, and the marks
@@ -56,31 +56,15 @@ struct Forest {
     merged: Vec<Row>,
 }
 
-impl Record for Row {
+impl PlainRecord for Row {
     fn key(&self) -> u64 {
         self.label
     }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(bytemuck::bytes_of(self));
-    }
-
-    fn read(bytes: &mut &[u8]) -> Self {
-        read_pod(bytes)
-    }
 }
 
-impl Record for Step {
+impl PlainRecord for Step {
     fn key(&self) -> u64 {
         self.class
-    }
-
-    fn write(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(bytemuck::bytes_of(self));
-    }
-
-    fn read(bytes: &mut &[u8]) -> Self {
-        read_pod(bytes)
     }
 }
 
