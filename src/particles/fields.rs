@@ -195,6 +195,8 @@ particle_fields! {
     enclosed_time: Scalar,                "s",      State,    -,              OnDemand, CONTACT;
     /// Share of the joint to other bodies that has come apart.
     joint_damage: Scalar,                 "",       State,    CONTACT,        IfHeld,   JOINTS;
+    /// How far pressure moves the particle against what it is joined to, which its bonds do not feel.
+    joint_pressed: Vector,                "m",      State,    CONTACT,        Never,    JOINTS;
     /// Elastic tangential displacement against the other bodies, by which friction holds.
     slip: Vector,                         "m",      State,    -,              OnDemand, FRICTION;
     /// Tangential velocity against the other bodies.
@@ -274,6 +276,8 @@ particle_fields! {
     contact_stiffening: Scalar,           "",       Scratch,  CONTACT,        OnDemand, GAS_CONTACT;
     /// Share of the joint that came apart in the last step.
     joint_growth: Scalar,                 "",       Scratch,  CONTACT,        Never,    JOINTS;
+    /// How much `joint_pressed` has changed in the last step.
+    joint_pressing: Vector,               "m",      Scratch,  CONTACT,        Never,    JOINTS;
     /// Contact energy.
     contact_energy: Scalar,               "J",      Scratch,  -,              OnDemand, CONTACT;
     /// Mean plastic strain of the neighbours without its linear part, for materials that soften where it localises.

@@ -80,12 +80,24 @@ fn it_bears_its_strengths_and_takes_its_energy() {
         let [peak, heat] = torn(blocks("2 mm", held, pulled, joint), axis, 3e-5);
         let (peak, heat) = (peak / (strength * area), heat / (ENERGY * area));
         println!("axis {axis}: force {peak}, energy {heat}");
-        // At five particles across; at ten .996 and .965 of the force, 1.02 and 1.05 of the energy.
+        // At five particles across; at ten .997 and .954 of the force, 1.02 and 1.03 of the energy.
         assert!(
-            (peak - 1.0).abs() < 0.09 && (heat - 1.0).abs() < 0.05,
+            (peak - 1.0).abs() < 0.1 && (heat - 1.0).abs() < 0.05,
             "{peak} {heat}"
         );
     }
+}
+
+/// Pressed together by some 100 MPa as they slide, which bonds do not hold: a joint that comes apart takes no more.
+#[test]
+fn it_takes_no_more_under_pressure() {
+    let joint = r#"strength = "30 MPa", shear_strength = "20 MPa", energy = "600 J/m^2""#;
+    let held = "{ x = 0, y = 0, z = 0 }";
+    let pulled = r#"{ x = "0.3 m/s", y = 0, z = "-0.03 m/s" }"#;
+    let [_, heat] = torn(blocks("2 mm", held, pulled, joint), 0, 3e-5);
+    let heat = heat / (ENERGY * 1e-4);
+    println!("energy {heat}");
+    assert!((heat - 1.0).abs() < 0.05, "{heat}");
 }
 
 #[test]

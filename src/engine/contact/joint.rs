@@ -3,7 +3,8 @@
 //! Particles whose places at the start are within the kernel of each other are bonded. With `w_ij = V_i V_j |W'(r⁰_ij)|`
 //! of these places a bond is a spring along the line between the two, of the force `c K w_ij (1 − d_ij)(r_ij − r⁰_ij)`.
 //! So momentum and angular momentum are exact, and a turn of all strains nothing. `c` is such that a plane that opens by δ
-//! bears `K δ` (moments of the kernel over half a space).
+//! bears `K δ` (moments of the kernel over half a space). Bonds bear no pressure, which contact does: what presses the
+//! faces together shortens them without a force.
 //!
 //! The opening of the joint at a particle is the δ that explains its bonds best, of least `Σ w (r − r⁰ − δ·e)²` along
 //! their directions e. Along the normal, the mean direction, and across it δ over that which bears the strength says how
@@ -119,30 +120,42 @@ impl Joints {
     }
 }
 
-/// A bond of two particles that has not come apart for good.
+/// A bond of two particles.
 struct Bond<'a> {
     j: ContactParticle,
     constants: &'a JointPair,
     separation: Separation,
     /// `V_j |W'|` (1/m).
     weight: f64,
-    /// How much it has stretched (m).
+    /// How much longer it is than at the start (m).
+    longer: f64,
+    /// The same without what presses the faces together, and that before the last step (m).
     stretch: f64,
+    stretch_before: f64,
+    /// How much of the change of its length in the step is due to what presses them together (m).
+    pressing: f64,
     /// Share that has come apart, and that before the last step.
     damage: [f64; 2],
 }
 
 impl Bond<'_> {
+    /// False if it had come apart for good before the last step.
+    fn holds(&self) -> bool {
+        self.damage[1] < 1.0
+    }
+
     /// Stiffness of the spring with a particle of a volume, whole (N/m).
     fn stiffness(&self, volume: f64) -> f64 {
         self.constants.spring * volume * self.weight
     }
 
-    /// The stretch now times that before a step `dt` (s), in m²: with the work of both forces in the step it balances the
-    /// energy that a spring loses as it softens.
-    fn released(&self, dt: f64) -> f64 {
-        let before = self.stretch + self.separation.approach() * dt;
-        (self.stretch * before).max(0.0)
+    /// Energy of the last step over its stiffness (m²) that becomes heat: with the work of the forces at both ends of the
+    /// step it balances what a spring holds that softens, and whose length at rest moves.
+    fn released(&self) -> f64 {
+        let [now, before] = self.damage;
+        let softened = (now - before) * (self.stretch * self.stretch_before).max(0.0);
+        let pulls = (1.0 - now) * self.stretch + (1.0 - before) * self.stretch_before;
+        0.5 * (softened + pulls * self.pressing)
     }
 }
 
@@ -153,6 +166,15 @@ fn damage(view: &ContactView, of: &ContactParticle) -> [f64; 2] {
     [damage, damage - view.particles.joint_growth[of.slot]]
 }
 
+/// How far pressure moves a particle against the bodies that it is joined to, and that before the last step (m).
+#[inline(always)]
+fn pressed(view: &ContactView, of: &ContactParticle) -> [[f64; 3]; 2] {
+    let all = view.particles;
+    let (now, change) = (all.joint_pressed[of.slot], all.joint_pressing[of.slot]);
+    let before = std::array::from_fn(|a| now[a] - change[a]);
+    [now, before].map(|vector| view.shown(of, &vector))
+}
+
 /// The bonds of a receiver with some of its foreign neighbours.
 fn bonds<'v>(
     view: &'v ContactView<'v>,
@@ -161,13 +183,11 @@ fn bonds<'v>(
 ) -> impl Iterator<Item = Bond<'v>> {
     let joints = &view.table.joints;
     let (start, here) = (joints.start(view, i), damage(view, i));
+    let pressed_here = pressed(view, i);
     view.others(i, neighbours).filter_map(move |(_, j)| {
         let constants = view.table.joint(i.size_class, j.size_class)?;
         let there = damage(view, &j);
         let damage = [0, 1].map(|when| 0.5 * (here[when] + there[when]));
-        if damage[1] >= 1.0 {
-            return None;
-        }
         let other = joints.start(view, &j);
         let [x, y, z] = [
             start[0] - other[0],
@@ -180,14 +200,23 @@ fn bonds<'v>(
             return None;
         }
         let separation = Separation::between(i, &j);
-        let stretch = separation.distance - distance;
+        let pressed_there = pressed(view, &j);
+        let before = separation.before(i, &j, view.dt);
+        let [now, then] = [(&separation, 0), (&before, 1)].map(|(separation, when)| {
+            let along = separation.along(0.5);
+            let short = dot(&pressed_here[when], &along) - dot(&pressed_there[when], &along);
+            (separation.distance - distance, short)
+        });
         let weight = j.volume * slope;
         Some(Bond {
             j,
             constants,
             separation,
             weight,
-            stretch,
+            longer: now.0,
+            stretch: now.0 - now.1,
+            stretch_before: then.0 - then.1,
+            pressing: now.1 - then.1,
             damage,
         })
     })
@@ -197,8 +226,10 @@ fn bonds<'v>(
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measured {
     particle: usize,
-    /// Share that has come apart.
+    /// Share that has come apart as the bonds are stretched now.
     damage: f64,
+    /// What presses it against the other bodies (m).
+    pressed: [f64; 3],
 }
 
 /// Lets joints of all particles come apart as far as their bonds are stretched. Collects in `found`.
@@ -207,41 +238,51 @@ pub(super) fn measure(found: &mut Vec<Vec<Measured>>, scene: &mut Scene) {
         return;
     }
     fill(&mut scene.particles.joint_growth, 0.0);
+    fill(&mut scene.particles.joint_pressing, [0.0; 3]);
     for &class in ContactClass::ALL {
         let view = scene.view();
         for_each_chunk(found, scene.lists, class, |found, list, _| {
             found.extend(list.iter().filter_map(|(index, neighbours)| {
                 let i = view.particle(index);
-                let damage = come_apart(&view, &i, neighbours)?;
-                let particle = i.slot;
-                (damage > view.particles.joint_damage[particle])
-                    .then_some(Measured { particle, damage })
+                come_apart(&view, &i, neighbours)
             }));
         });
         let particles = &mut *scene.particles;
-        let fields = [&mut particles.joint_damage, &mut particles.joint_growth];
-        let [all, growth] = fields.map(|field| Scatter::new(field));
+        let [all, growth] = [&mut particles.joint_damage, &mut particles.joint_growth]
+            .map(|field| Scatter::new(field));
+        let [pressed, pressing] = [&mut particles.joint_pressed, &mut particles.joint_pressing]
+            .map(|field| Scatter::new(field));
         let chunks = found.par_iter().with_max_len(CHUNKS_AT_ONCE);
-        chunks
-            .flatten_iter()
-            .for_each(|&Measured { particle, damage }| {
-                // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
-                let (before, growth) = unsafe { (all.slot(particle), growth.slot(particle)) };
-                *growth += damage - *before;
-                *before = damage;
-            });
+        chunks.flatten_iter().for_each(|now| {
+            // SAFETY: a particle is receiver in one task, and each thread has its own tasks.
+            let (damage, grown, short, shorter) = unsafe {
+                let at = now.particle;
+                (
+                    all.slot(at),
+                    growth.slot(at),
+                    pressed.slot(at),
+                    pressing.slot(at),
+                )
+            };
+            if now.damage > *damage {
+                *grown = now.damage - *damage;
+                *damage = now.damage;
+            }
+            *shorter = std::array::from_fn(|a| now.pressed[a] - short[a]);
+            *short = now.pressed;
+        });
     }
 }
 
-/// How much of the joint of a particle has to come apart as its bonds are stretched; none if it has none.
-fn come_apart(view: &ContactView, i: &ContactParticle, neighbours: &[u32]) -> Option<f64> {
+/// How the joint of a particle fares as its bonds are stretched; none if it has none.
+fn come_apart(view: &ContactView, i: &ContactParticle, neighbours: &[u32]) -> Option<Measured> {
     let (mut weight, mut normal, mut pull, mut spread) = (0.0, [0.0; 3], [0.0; 3], [0.0; 6]);
     let (mut inverse_starts, mut brittle) = ([0.0; 2], [0.0; 2]);
     for Bond {
         constants,
         separation,
         weight: w,
-        stretch,
+        longer,
         ..
     } in bonds(view, i, neighbours)
     {
@@ -249,7 +290,7 @@ fn come_apart(view: &ContactView, i: &ContactParticle, neighbours: &[u32]) -> Op
         weight += w;
         for a in 0..3 {
             normal[a] += w * e[a];
-            pull[a] += w * stretch * e[a];
+            pull[a] += w * longer * e[a];
         }
         let products = [
             e[0] * e[0],
@@ -294,7 +335,11 @@ fn come_apart(view: &ContactView, i: &ContactParticle, neighbours: &[u32]) -> Op
     let [open, slid] = inverse_starts.map(|sum| sum / weight);
     let load = [apart.max(0.0) * open, slide * slid * soft];
     let brittle = [brittle[0] / weight, brittle[1] / (weight * soft)];
-    Some(softened(load, brittle.map(|brittle| brittle.min(1.0))))
+    Some(Measured {
+        particle: i.slot,
+        damage: softened(load, brittle.map(|brittle| brittle.min(1.0))),
+        pressed: normal.map(|x| apart.min(0.0) * x),
+    })
 }
 
 /// Share that has come apart at an opening and a slide over those that bear the strengths, given one over the ductilities: `(1 − d) λ` falls from one at `λ = 1` to nothing at the ductility.
@@ -323,7 +368,7 @@ impl TaskForces {
             let i = view.particle(index);
             let mut on = Receiver::new(&i, 0, &mut self.by_body);
             let mut any = false;
-            for bond in bonds(view, &i, neighbours) {
+            for bond in bonds(view, &i, neighbours).filter(Bond::holds) {
                 let j = &bond.j;
                 let stiffness = bond.stiffness(i.volume);
                 let left = stiffness * (1.0 - bond.damage[0]);
@@ -331,10 +376,9 @@ impl TaskForces {
                 view.mirror(&mut force);
                 // Each side has half of both.
                 let square = bond.stretch * bond.stretch;
-                let growth = bond.damage[0] - bond.damage[1];
-                let heat = if growth > 0.0 && view.dt > 0.0 {
+                let heat = if view.dt > 0.0 {
                     let share = view.table.pair(i.size_class, j.size_class).heat_share;
-                    0.5 * share * stiffness * growth * bond.released(view.dt) / view.dt
+                    share * stiffness * bond.released() / view.dt
                 } else {
                     0.0
                 };
@@ -358,7 +402,7 @@ pub(super) fn add_stress(
     neighbours: &[u32],
     carried: &mut ContactStress,
 ) {
-    for bond in bonds(view, i, neighbours) {
+    for bond in bonds(view, i, neighbours).filter(Bond::holds) {
         let left = bond.stiffness(i.volume) * (1.0 - bond.damage[0]);
         let mut force = bond.separation.along(-left * bond.stretch);
         view.mirror(&mut force);

@@ -247,6 +247,18 @@ impl Separation {
         Self { r, distance, rate }
     }
 
+    /// That before a step `dt` (s).
+    pub fn before(&self, i: &ContactParticle, j: &ContactParticle, dt: f64) -> Self {
+        let moved = |a: usize| dt * (i.velocity[a] - j.velocity[a]);
+        let r: [f64; 3] = std::array::from_fn(|a| self.r[a] - moved(a));
+        let distance = (r[0] * r[0] + r[1] * r[1] + r[2] * r[2]).sqrt().max(1e-30);
+        Self {
+            r,
+            distance,
+            rate: self.rate,
+        }
+    }
+
     /// Speed of approach along the line between the two (m/s), negative for receding pairs.
     #[inline(always)]
     pub fn approach(&self) -> f64 {
