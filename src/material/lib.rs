@@ -455,6 +455,10 @@ impl Material {
         ];
         let mut now = Conditions::new(dt, rho0, moduli);
         now.options = self.failure.options;
+        now.spalls = self
+            .failure
+            .spall
+            .is_some_and(|spall| spall.follows_state());
         if ALL && let Some(porosity) = &self.porosity {
             now.permanent = crushed;
             if porosity.strength == StrengthOf::Matrix {

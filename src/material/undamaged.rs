@@ -2,9 +2,8 @@
 //!
 //! A law of failure whose damage grows with plastic flow or crushed pores (`failure.johnson_cook` and others) uses its constants
 //! in no step that leaves damage at zero. A limit of tension at which matter fails at once uses its own when matter reaches it, and
-//! damages that matter in the same step: a larger limit has had no effect either. (Where matter softens, the limit of spall
-//! holds the pressure, also in steps that add no damage.) What matter loses by damage, and how cracks take energy, comes
-//! later still.
+//! damages that matter in the same step, also where matter softens: a larger limit has had no effect either. What matter
+//! loses by damage, and how cracks take energy, comes later still.
 
 use super::declare::Value;
 use super::{Constant, Failure, Material};
@@ -56,18 +55,17 @@ impl Material {
         let more = others
             .iter()
             .filter(|other| value(&own, &other.key).is_none());
-        let softens = self.failure.options.softens();
         let mut keys = own.iter().chain(more).map(|constant| &constant.key);
         let felt = keys.find(|key| {
             let [now, then] = [&own, &others].map(|list| value(list, key));
-            now != then && (forgets || others_act || is_felt(key, now, then, softens))
+            now != then && (forgets || others_act || is_felt(key, now, then))
         });
         felt.cloned()
     }
 }
 
 /// True if matter may feel another value of a constant before the present one has damaged it.
-fn is_felt(key: &str, now: Option<Value>, then: Option<Value>, softens: bool) -> bool {
+fn is_felt(key: &str, now: Option<Value>, then: Option<Value>) -> bool {
     if key == "failure.seed" {
         // That of no text is one.
         return false;
@@ -77,7 +75,7 @@ fn is_felt(key: &str, now: Option<Value>, then: Option<Value>, softens: bool) ->
     };
     match key {
         // Tension is negative here.
-        "failure.spall.pressure" => softens || to > from,
+        "failure.spall.pressure" => to > from,
         "failure.principal_stress.limit" => to < from,
         "failure.fracture_energy" | "failure.scatter" => false,
         _ => !BY_FLOW.iter().any(|law| key.starts_with(law)),
@@ -87,10 +85,18 @@ fn is_felt(key: &str, now: Option<Value>, then: Option<Value>, softens: bool) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::FailureOptions;
     use crate::library::find;
 
+    /// That of the library, which fails at once here.
+    fn aluminium() -> Material {
+        let mut own = find("aluminium-2024-ductile").unwrap();
+        own.failure.options = FailureOptions::DEFAULT;
+        own
+    }
+
     fn ductile(change: impl FnOnce(&mut Material)) -> Option<String> {
-        let own = find("aluminium-2024-ductile").unwrap();
+        let own = aluminium();
         let mut other = own.clone();
         change(&mut other);
         own.differs_undamaged(&other)
@@ -120,21 +126,20 @@ mod tests {
         assert!(ductile(|other| other.failure.options.fracture_energy = 1.0).is_some());
         let melts = |other: &mut Material| other.failure.johnson_cook.as_mut().unwrap().d5 = 0.5;
         let own = {
-            let mut own = find("aluminium-2024-ductile").unwrap();
+            let mut own = aluminium();
             own.failure.johnson_cook.as_mut().unwrap().d5 = 0.0;
             own
         };
         let mut other = own.clone();
         melts(&mut other);
         assert!(own.differs_undamaged(&other).is_some());
-        // What softens at its limit is held there.
         let mut soft = own.clone();
         soft.failure.options.fracture_energy = 1e4;
         let mut stronger = soft.clone();
         stronger.failure.options.fracture_energy = 2e4;
         assert_eq!(soft.differs_undamaged(&stronger), None);
         stronger.failure.spall.as_mut().unwrap().pressure *= 1.1;
-        assert!(soft.differs_undamaged(&stronger).is_some());
+        assert_eq!(soft.differs_undamaged(&stronger), None);
         assert!(ductile(|other| other.failure.johnson_cook = None).is_some());
         assert!(ductile(|other| other.failure.spall = None).is_some());
     }

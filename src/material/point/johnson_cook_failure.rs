@@ -16,10 +16,10 @@
 //! Rules that the fit leaves open:
 //!
 //! - `ε_f` is at least `least_strain`: fits with a negative D₁ may fall below zero.
-//! - Constants are fitted to torsion (η = 0) and notched bars (η up to about one). Beyond, `ε_f` is
-//!   that of η = 1, and the spall limit of the material rules. With a `spall_stress` `σ_s`, `ε_f` falls
-//!   from there linearly in the mean tension, to `least_strain` at `σ_s`; in section 5 of the paper of
-//!   1985 this line begins at η = 1.5.
+//! - Constants are fitted to torsion (η = 0) and notched bars (η up to about one). Beyond, the spall limit of the
+//!   material rules, and flow damages nothing; without such a limit `ε_f` is that of η = 1. With a `spall_stress` `σ_s`,
+//!   `ε_f` falls from there linearly in the mean tension, to `least_strain` at `σ_s`; in section 5 of the paper of 1985
+//!   this line begins at η = 1.5.
 //! - Nothing is damaged below η = −1/3, the value of uniaxial compression: Bao & Wierzbicki (2005),
 //!   *On the cut-off value of negative triaxiality for fracture*, Eng. Fract. Mech. 72, 1049.
 //!
@@ -169,10 +169,13 @@ impl JohnsonCookFailure {
         first + (self.least_strain - first) * along
     }
 
-    /// Failure strain of lane k, which has flowed.
+    /// Failure strain of lane k, which has flowed; infinite beyond the tests of the fit where a spall limit rules.
     #[inline(always)]
     fn strain_of(&self, point: &PointBatch, k: usize, now: &Conditions) -> f64 {
         let stress = [point.pressure[k], equivalent_stress(point, k)];
+        if now.spalls && self.spall_stress == 0.0 && -stress[0] > LARGEST * stress[1] {
+            return f64::INFINITY;
+        }
         let rate = now.plastic_increment[k] / now.dt;
         let strain = self.failure_strain(stress, rate, now.temperature[k], &now.thermal);
         strain * now.options.strain_factor(point.id[k])

@@ -195,6 +195,8 @@ pub struct Conditions {
     pub bearing_density: f64,
     /// Options of the failure.
     pub options: FailureOptions,
+    /// True if a spall limit rules where tension is all but hydrostatic.
+    pub spalls: bool,
 }
 
 /// Strengths of intact and of fractured matter.
@@ -278,6 +280,7 @@ impl Conditions {
             members: Members::NONE,
             bearing_density: reference_density,
             options: FailureOptions::DEFAULT,
+            spalls: false,
         }
     }
 

@@ -19,6 +19,9 @@ use super::failure::FAILED;
 use super::{Conditions, LANES, Law, PointBatch, damage};
 use crate::at_least;
 
+/// Damage of matter whose pressure has been held and whose cracks have not opened: it tells that the limit has acted.
+const HELD: f64 = 1e-30;
+
 /// Fate of material beyond the limit of [`Spall`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -109,6 +112,7 @@ impl Law for Spall {
             if held && point.failure_onset[k] < 1.0 && point.damage[k] < FAILED {
                 let [xx, yy, zz] = [0, 4, 8].map(|c| point.velocity_gradient[c][k]);
                 damage::spend(point, k, -p * (xx + yy + zz), now);
+                point.damage[k] = at_least(point.damage[k], HELD);
             }
         }
     }

@@ -144,6 +144,8 @@ fn options(
         }
         Some(effect) => *effect.get_ref(),
         None if fades => fading,
+        // Without its energy what softens in the library fails at once.
+        None if base.softens() => Effect::default(),
         None => base.effect,
     };
     Ok(options)
