@@ -501,6 +501,7 @@ fn ductile_materials_bear_the_spall_strength_that_they_state() {
         };
         for lateral in [0.0, 0.2, 0.5, 0.9, 1.0] {
             let mut points = batch(material.reference_density, 0.0);
+            points.mass = [material.reference_density * 0.2e-3_f64.powi(3); LANES];
             let l = nalgebra::Vector3::new(1e5, lateral * 1e5, lateral * 1e5);
             let mut least = 0.0_f64;
             while points.damage[0] < 1.0 {
