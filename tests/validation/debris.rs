@@ -104,3 +104,42 @@ fn a_quarter_is_as_dense_at_its_planes_as_beside_them() {
     println!("{denser:.2} times as dense within .1 mm of the planes as within 2 mm");
     assert!((0.5..1.5).contains(&denser), "{denser}");
 }
+
+/// Share of a sphere of 3.175 mm that is whole after a plate of .787 mm, at a speed (km/s), 4 µs after they have met.
+fn whole_share(spacing: &str, speed: &str) -> f64 {
+    let text = format!(
+        "dimension = 3\nspacing = \"{spacing}\"\n[run]\nend_time = \"4 us\"\n\
+         [material.2017]\nlibrary = \"aluminium-2024-ductile\"\n\
+         [material.6061]\nlibrary = \"aluminium-6061-ductile\"\n\
+         [[body]]\nname = \"bumper\"\nmaterial = \"6061\"\n\
+         shape.cylinder = {{ axis = \"z\", radius = \"6 mm\", length = \"0.787 mm\" }}\n\
+         [[body]]\nname = \"sphere\"\nmaterial = \"2017\"\n\
+         shape.sphere = {{ centre = [0, 0, \"5 mm\"], diameter = \"3.175 mm\" }}\n\
+         velocity = [0, 0, \"-{speed} km/s\"]\ntouch = {{ body = \"bumper\", direction = \"-z\" }}\n"
+    );
+    let mut s = physics_support::start(inline(&text));
+    run_to(&mut s, 4e-6);
+    let all = &s.particles;
+    let (mut whole, mut of) = (0.0, 0.0);
+    for i in (0..all.owned()).filter(|&i| all.body[i] == 1) {
+        of += all.mass[i];
+        whole += if all.damage[i] < 1.0 {
+            all.mass[i]
+        } else {
+            0.0
+        };
+    }
+    whole / of
+}
+
+/// Behind this plate walls of 4.06 mm were perforated at 2.6 to 3.1 km/s (Ryan, Bjorkman & Christiansen 2011, Int. J. Impact
+/// Eng. 38, 504), which takes about half of the sphere in one piece; those of 2.54 mm held at 4.7 km/s.
+#[test]
+#[ignore = "slow: whole spheres through plates"]
+fn a_sphere_at_three_kilometres_a_second_does_not_turn_to_dust() {
+    for spacing in ["0.2 mm", "0.15 mm"] {
+        let [slow, fast] = ["3", "4.7"].map(|speed| whole_share(spacing, speed));
+        println!("{spacing}: {slow:.3} whole at 3 km/s, {fast:.3} at 4.7 km/s");
+        assert!(slow > 0.35 && fast < 0.2, "{slow} {fast}");
+    }
+}
