@@ -159,8 +159,8 @@ fn paused(run: &Path) -> Running {
     strike(&mut command, "pause:0:30");
     let running = start(command.args(["--set", "output.checkpoint_every_steps=10"]));
     running.until_step(run, 29);
-    // That step's row stands before its other files do: who takes the folder away while ranks create one together may see
-    // them wait for each other.
+    // That step's row stands before its other files do: who takes the folder away while ranks open one together is told of
+    // that file.
     std::thread::sleep(std::time::Duration::from_millis(500));
     running
 }

@@ -1,10 +1,11 @@
 //! Snapshots and checkpoints written and read by real ranks: content never depends on them.
 
 use std::fs;
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::process::Command;
 
-use crate::ranks::{is_rank, on_ranks};
+use crate::ranks::{is_rank, launch, on_ranks};
 use crate::sentinel::{id, sentinel};
 use crate::stored::{case, meta, particles, sorted_ids};
 use comm::Comm;
@@ -507,6 +508,148 @@ fn a_full_disk_is_an_error_on_every_rank() {
             return;
         }
     }
+}
+
+/// Fails unless all ranks have an error, with the same text.
+fn assert_all_refused(comm: &Comm, error: Option<OutputError>) {
+    let text = error.expect("it is refused").to_string();
+    let mut first = text.clone().into_bytes();
+    comm.broadcast(&mut first);
+    assert_eq!(text.as_bytes(), first, "the same verdict everywhere");
+    assert!(text.contains("No such file"), "{text}");
+}
+
+/// The last rank has another folder below it, without the one of the files: as if that had been removed just before.
+#[test]
+fn a_folder_that_one_rank_misses_is_an_error_on_every_rank() {
+    let name = "output::a_folder_that_one_rank_misses_is_an_error_on_every_rank";
+    let folder = tempfile::tempdir().unwrap();
+    on_ranks(name, 3, folder.path(), |comm, folder| {
+        let [here, elsewhere] = ["here", "elsewhere"].map(|name| folder.join(name));
+        if comm.is_root() {
+            fs::create_dir_all(here.join("files")).unwrap();
+            fs::create_dir(&elsewhere).unwrap();
+        }
+        comm.barrier();
+        let (case, particles) = (case(), particles(comm, 1000));
+        let write = |path: &Path| {
+            let quantities = all_quantities();
+            let (meta, format) = (meta(&case), SnapshotFormat::of(&quantities));
+            snapshot::write(comm, path, &particles, &meta, &format, &mut Rows::default())
+        };
+        write(&here.join("files/whole")).unwrap();
+        let last = comm.rank() + 1 == comm.size();
+        std::env::set_current_dir(if last { elsewhere } else { here }).unwrap();
+        assert_all_refused(comm, write(Path::new("files/new")).err());
+        assert_all_refused(
+            comm,
+            Content::open_shared(comm, Path::new("files/whole")).err(),
+        );
+        if !last {
+            let left = fs::read_dir("files").unwrap();
+            assert_eq!(left.count(), 1, "the whole file alone");
+        }
+    });
+}
+
+/// Leaves this process so many files that it may open; gives those that it must hold for that, and the last descriptor.
+fn leave(count: usize) -> (Vec<fs::File>, i32) {
+    let limit = libc::rlimit {
+        rlim_cur: 256,
+        rlim_max: 256,
+    };
+    // SAFETY: the limit is read from a valid place.
+    assert_eq!(
+        unsafe { libc::setrlimit(libc::RLIMIT_NOFILE, &raw const limit) },
+        0
+    );
+    let mut held: Vec<fs::File> = (0..256)
+        .map_while(|_| fs::File::open("/dev/null").ok())
+        .collect();
+    let last = held.last().map_or(0, AsRawFd::as_raw_fd);
+    held.truncate(held.len() - count);
+    (held, last)
+}
+
+/// Takes the descriptors that this process frees once it has opened and freed this one, and then renames a folder.
+fn take(descriptor: i32, folder: &Path) {
+    // SAFETY: a question about a number.
+    let is_open = || unsafe { libc::fcntl(descriptor, libc::F_GETFD) } >= 0;
+    while !is_open() {}
+    while is_open() {}
+    while let Ok(taken) = fs::File::open("/dev/null") {
+        std::mem::forget(taken);
+    }
+    // By now the others have the file.
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    // To remove it would take a descriptor.
+    fs::rename(folder, folder.with_extension("gone")).unwrap();
+}
+
+/// Descriptors that a rank needs to open a file with others: that which it holds, and room for MPI's own.
+const ENOUGH: usize = 5;
+
+/// Rank 1 may open so many files as the folder's file says; with just enough somebody takes what it frees for MPI, and the
+/// folder.
+#[test]
+fn a_file_that_mpi_cannot_open_on_one_rank_ends_all() {
+    let name = "output::a_file_that_mpi_cannot_open_on_one_rank_ends_all";
+    if is_rank() {
+        on_ranks(name, 0, Path::new(""), |comm, folder| {
+            let left = fs::read_to_string(folder.join("left"))
+                .unwrap()
+                .parse()
+                .unwrap();
+            let (case, particles) = (case(), particles(comm, 1000));
+            let quantities = all_quantities();
+            let (meta, format) = (meta(&case), SnapshotFormat::of(&quantities));
+            let mut rows = Rows::default();
+            let mut write = |name: &str| {
+                let path = folder.join(name);
+                snapshot::write(comm, &path, &particles, &meta, &format, &mut rows)
+            };
+            write("files/before").unwrap();
+            let held = (comm.rank() == 1).then(|| leave(left));
+            if let Some((_, last)) = held
+                && left == ENOUGH
+            {
+                let folder = folder.join("files");
+                std::thread::spawn(move || take(last, &folder));
+            }
+            let written = write("files/new").map_err(|error| error.to_string());
+            drop(held);
+            if comm.is_root() {
+                println!("verdict: {}", written.err().unwrap_or_default());
+            }
+        });
+        return;
+    }
+    let told = |left: usize| {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("left"), left.to_string()).unwrap();
+        fs::create_dir(folder.path().join("files")).unwrap();
+        let begun = std::time::Instant::now();
+        let output = launch(name, 3, folder.path());
+        assert!(begun.elapsed().as_secs() < 60, "{left}: {output:?}");
+        let said = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
+        (output.status.code(), said.concat())
+    };
+    for (left, verdict) in [
+        (0, "Too many open files"),
+        (ENOUGH - 1, "Too many open files"),
+        (ENOUGH + 5, "verdict: \n"),
+    ] {
+        let (code, said) = told(left);
+        assert!(code == Some(0) && said.contains(verdict), "{left}: {said}");
+    }
+    // Who takes the descriptor may come too late.
+    let ended = (0..20)
+        .map(|_| told(ENOUGH))
+        .find(|(code, _)| *code == Some(1));
+    let (_, said) = ended.expect("MPI does not open the file");
+    let told = said.matches("was removed or moved while the ranks").count();
+    assert_eq!(told, 1, "{said}");
+    assert!(!said.contains("verdict"), "{said}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests that run themselves again on several ranks under a real `mpirun`.
 
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 use comm::{Comm, Session, abort_job};
 
@@ -21,19 +21,7 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
         drop(comm);
         return String::new();
     }
-    let output = Command::new("timeout")
-        .args(["120", "mpirun", "--quiet", "-n", &ranks.to_string()])
-        .arg(std::env::current_exe().unwrap())
-        .args(["--exact", test, "--include-ignored"])
-        .args(["--nocapture", "--test-threads=1"])
-        .env(FOLDER, folder)
-        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
-        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
-        .env("OMPI_MCA_mpi_yield_when_idle", "1")
-        .output()
-        .expect("mpirun starts");
+    let output = launch(test, ranks, folder);
     assert!(
         output.status.success(),
         "{test} on {ranks} ranks: {}\n{}{}",
@@ -47,6 +35,23 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
         "no test is called {test}: {said}"
     );
     said
+}
+
+/// Runs the test called `test`, with its module, on so many ranks, all in one folder; its ranks may end the job.
+pub fn launch(test: &str, ranks: usize, folder: &Path) -> Output {
+    Command::new("timeout")
+        .args(["120", "mpirun", "--quiet", "-n", &ranks.to_string()])
+        .arg(std::env::current_exe().unwrap())
+        .args(["--exact", test, "--include-ignored"])
+        .args(["--nocapture", "--test-threads=1"])
+        .env(FOLDER, folder)
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        .env("OMPI_MCA_hwloc_base_binding_policy", "none")
+        .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
+        .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .output()
+        .expect("mpirun starts")
 }
 
 /// Runs `task` of the test called `test` on each of these numbers of ranks in turn.

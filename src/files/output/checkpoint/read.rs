@@ -44,7 +44,7 @@ pub fn read(
     let state = state_file(folder);
     verify(comm, &state, &manifest)?;
 
-    let file = agree(comm, Content::open_shared(comm, &state))?;
+    let file = Content::open_shared(comm, &state)?;
     let fields = agree(comm, check_content(&file, &manifest))?;
     let block = Block::even(manifest.particles, comm.rank(), comm.size());
     particles.resize_owned_in(&fields, block.count);

@@ -18,9 +18,10 @@ use hdf5_sys::h5l::H5L_info1_t;
 use hdf5_sys::h5p::{H5P_DEFAULT, H5Pget_external_count, H5Pget_layout, H5Pget_nfilters};
 use hdf5_sys::h5t::{H5T_class_t, H5Tget_class, H5Tis_variable_str};
 
-use crate::output::{Block, OutputError, agree, files, on_root, partitions};
+use crate::output::{Block, OutputError, files, on_root, partitions};
 use comm::Comm;
 
+use super::together::open_together;
 use super::transfer::{call, read_rows};
 use super::{Element, Number, RowType, access, explain};
 
@@ -55,13 +56,16 @@ impl Gate {
             Ok(())
         })?;
         ranks.max_u64(&mut bytes);
-        let opened = access(comm).open(path).map_err(|e| OutputError::Hdf5 {
-            action: "open as HDF5".to_owned(),
-            path: path.to_owned(),
-            reason: explain(&e),
-        });
+        let open = || {
+            access(comm).open(path).map_err(|e| OutputError::Hdf5 {
+                action: "open as HDF5".to_owned(),
+                path: path.to_owned(),
+                reason: explain(&e),
+            })
+        };
+        let (file, _) = open_together(ranks, path, false, open)?;
         Ok(Self {
-            file: agree(ranks, opened)?,
+            file,
             bytes: bytes[0],
         })
     }

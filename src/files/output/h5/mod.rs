@@ -6,6 +6,7 @@ mod direct;
 mod gate;
 mod pieces;
 pub mod read;
+mod together;
 mod transfer;
 mod writeback;
 mod writer;
@@ -13,7 +14,8 @@ mod writer;
 pub use content::{Array, Content};
 pub use direct::open_for_reading;
 pub use pieces::{PIECE, Piece};
-pub use writer::{Fill, Writer, abandoned};
+pub use together::abandoned;
+pub use writer::{Fill, Writer};
 
 use hdf5::Datatype;
 use hdf5::file::FileBuilder;

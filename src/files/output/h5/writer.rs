@@ -3,7 +3,6 @@
 use std::io::Write as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use hdf5::plist::dataset_create::{AllocTime, FillTime};
 use hdf5::types::{FixedAscii, TypeDescriptor};
@@ -16,8 +15,9 @@ use comm::{Comm, pieces};
 
 use super::direct::Direct;
 use super::pieces::{PIECE, Piece};
+use super::together::{abandon, during_call, open_together};
 use super::transfer::{call, write_rows};
-use super::writeback::Writeback;
+use super::writeback::begin_writeback;
 use super::{Element, RowType, access, explain};
 
 /// Fills a buffer with a range of a block's rows.
@@ -32,7 +32,8 @@ pub struct Writer<'a> {
     file: Option<File>,
     /// Writes long rows, where the file system supports it.
     direct: Option<Direct>,
-    writeback: Writeback,
+    /// The file itself, whatever becomes of its name.
+    held: std::fs::File,
 }
 
 impl<'a> Writer<'a> {
@@ -63,14 +64,22 @@ impl<'a> Writer<'a> {
             // Shorter objects lie between.
             builder.with_fapl(|list| list.alignment(bytes, bytes));
         }
-        let created = builder.create(path);
-        let file = agree(comm, created.map_err(|e| refusal("create", path, &e)))?;
+        let create = || {
+            builder
+                .create(path)
+                .map_err(|e| refusal("create", path, &e))
+        };
+        let created = open_together(comm, path, true, create);
+        if created.is_err() && comm.is_root() {
+            let _ = files::remove(&room(path));
+        }
+        let (file, held) = created?;
         Ok(Self {
             comm,
             path: path.to_owned(),
             file: Some(file),
             direct: Direct::of(path),
-            writeback: Writeback::of(path),
+            held,
         })
     }
 
@@ -203,7 +212,7 @@ impl<'a> Writer<'a> {
         }
         let written = write_rows(dataset, row, block, bytes);
         if !bytes.is_empty() {
-            self.writeback.begin();
+            begin_writeback(&self.held);
         }
         written.map_err(|e| self.refusal(name, &e))
     }
@@ -253,7 +262,9 @@ impl<'a> Writer<'a> {
             // SAFETY: the file is open.
             call(|| unsafe { H5Fflush(file.id(), H5F_scope_t::H5F_SCOPE_GLOBAL) })
         })?;
-        let closed = self.file.take().map_or(Ok(()), File::close);
+        let file = self.file.take();
+        let close = || file.map_or(Ok(()), File::close);
+        let closed = during_call(self.comm, &self.path, &self.held, close);
         agree(
             self.comm,
             closed.map_err(|e| refusal("close", &self.path, &e)),
@@ -322,31 +333,16 @@ impl Drop for Writer<'_> {
     /// Frees the disk space of a file after an error, but leaves it open on all ranks. HDF5 may
     /// not be able to write its records, and then crashes, at once or when MPI and with it HDF5 is
     /// finalised: so no rank closes the file, and the job must end without finalising MPI, see
-    /// [`abandoned`].
+    /// [`abandoned`](super::abandoned).
     fn drop(&mut self) {
         let Some(file) = self.file.take() else { return };
         self.direct = None;
         if self.comm.is_root() {
             let _ = files::remove(&room(&self.path));
-            if let Ok(raw) = std::fs::File::options().write(true).open(&self.path) {
-                let _ = raw.set_len(0);
-            }
+            let _ = self.held.set_len(0);
         }
-        if self.comm.raw().is_some() {
-            ABANDONED.store(true, Ordering::Relaxed);
-            std::mem::forget(file);
-        }
+        abandon(self.comm, Some(file));
     }
-}
-
-/// Set when a file of several ranks was left open after an error.
-static ABANDONED: AtomicBool = AtomicBool::new(false);
-
-/// Returns true if this process has a file that it can neither write nor close: MPI must not be
-/// finalised, since HDF5 would try to.
-#[must_use]
-pub fn abandoned() -> bool {
-    ABANDONED.load(Ordering::Relaxed)
 }
 
 /// Bytes that HDF5's own records of one of our files need at most.
