@@ -2,7 +2,7 @@
 
 use files::input::{load, output_and_run_only, parse};
 use files::preflight::{approaches, warnings};
-use material::{AfterSpall, Failure, Spall, Strength, library};
+use material::{AfterSpall, Effect, Failure, Spall, Strength, library};
 use model::{
     Axis, Case, ClockInterval, ContactMode, PotentialRange, Precision, Shape, SmoothingLength,
     TermOptions, Vec3,
@@ -61,17 +61,29 @@ fn the_main_job() {
     assert!(matches!(case.default_contact, ContactMode::Overlap(_)));
 }
 
+/// Failure of the material of a case.
+fn failure(material: &str) -> Failure {
+    let text = format!(
+        "dimension = 2\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n[material.m]\n{material}\n\
+         [[body]]\nname = \"b\"\nmaterial = \"m\"\nshape.box = {{ lower = [0, 0], upper = [\"9 mm\", \"9 mm\"] }}\n"
+    );
+    let case = parse("one body", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
+    case.materials[0].failure
+}
+
+/// Without the energy of its cracks a metal of the library loses its strength as it fails, and nothing before.
+#[test]
+fn metals_without_a_fracture_energy_fail_at_once() {
+    let metal = "library = \"aluminium-2024-ductile\"";
+    assert_eq!(failure(metal).options.effect, Effect::Scaled);
+    let without = failure(&format!("{metal}\nfailure.fracture_energy = \"0 J/m^2\"")).options;
+    assert_eq!(without.effect, Effect::StrengthLost);
+    assert!(!without.softens());
+}
+
 /// What bears no shear and is a liquid cavitates, unless its case says more; a gas needs no limit.
 #[test]
 fn liquids_cavitate() {
-    let failure = |material: &str| {
-        let text = format!(
-            "dimension = 2\nspacing = \"1 mm\"\nrun.end_time = \"1 us\"\n[material.m]\n{material}\n\
-             [[body]]\nname = \"b\"\nmaterial = \"m\"\nshape.box = {{ lower = [0, 0], upper = [\"9 mm\", \"9 mm\"] }}\n"
-        );
-        let case = parse("liquid", &text, &[]).unwrap_or_else(|error| panic!("{error}"));
-        case.materials[0].failure
-    };
     let tait = "density = \"1 g/cm^3\"\neos.tait.sound_speed = \"1.5 km/s\"\nstrength = \"none\"";
     let water = "library = \"water\"\neos.tait.sound_speed = \"25 m/s\"";
     for material in [tait, water] {

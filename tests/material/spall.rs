@@ -3,8 +3,8 @@
 
 use crate::support::{batch, equivalent, material, set_gradient, step};
 use material::{
-    AfterSpall, Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Spall, Strength,
-    Value, library,
+    AfterSpall, Effect, Elastic, Eos, LANES, Linear, LinearForm, Material, PointBatch, Spall,
+    Strength, Value, library,
 };
 use nalgebra::Matrix3;
 
@@ -47,6 +47,28 @@ fn constants_tell_the_choice() {
         assert_eq!(found("failure.spall.after"), Value::Word(word));
         assert_eq!(found("failure.spall.pressure"), Value::Number(LIMIT, "Pa"));
     }
+}
+
+/// Matter whose pressure the limit has held says so, also where nothing has opened its cracks: forks of a run ask for it.
+#[test]
+fn held_matter_counts_as_damaged() {
+    let mut metal = metal(AfterSpall::Failed);
+    metal.failure.options.fracture_energy = 1e4;
+    metal.failure.options.effect = Effect::Scaled;
+    let mut points = batch(RHO, 0.0);
+    points.mass = [RHO * 1e-9; LANES];
+    strain(&metal, &mut points, 0.99 * BREAK);
+    assert_eq!(points.damage, [0.0; LANES]);
+    // Beyond the limit, and at rest: what heat does without expansion.
+    points.density = points.density.map(|density| density * (1.0 - 0.02 * BREAK));
+    strain(&metal, &mut points, 0.0);
+    assert_eq!(points.pressure, [LIMIT; LANES]);
+    assert!(
+        points
+            .damage
+            .iter()
+            .all(|&damage| 0.0 < damage && damage < 1e-20)
+    );
 }
 
 #[test]
