@@ -88,7 +88,7 @@ fn it_bears_its_strengths_and_takes_its_energy() {
     }
 }
 
-/// Pressed together by some 100 MPa as they slide, which bonds do not hold: a joint that comes apart takes no more.
+/// Pressed together by some 1e8 Pa as they slide, which bonds do not hold: a joint that comes apart takes no more.
 #[test]
 fn it_takes_no_more_under_pressure() {
     let joint = r#"strength = "30 MPa", shear_strength = "20 MPa", energy = "600 J/m^2""#;
