@@ -216,12 +216,19 @@ impl Lister<'_> {
         } else {
             cluster.longest(self.sequence.smoothing_lengths())
         };
-        let far = (own + self.longest).max(self.least) * self.inflation;
+        let range = |h: f64| (own + h).max(self.least) * self.inflation;
+        let bounds = (&cluster.lower, &cluster.upper);
+        let far = if UNIFORM {
+            range(self.longest)
+        } else {
+            let all = range(self.longest);
+            self.sequence.reach(self.sources, bounds, (own, all), range)
+        };
         let mut special = 0;
         near_box(
             self.sequence,
             self.sources,
-            (&cluster.lower, &cluster.upper),
+            bounds,
             far,
             &mut self.hints,
             |eight| {

@@ -261,19 +261,13 @@ impl Candidates {
                 continue;
             };
             let own = cluster.longest(sequence.smoothing_lengths());
-            let range = |eight: &Eight| {
+            let within = |eight: &Eight| {
                 let both = V::read(eight.lengths).add(V::splat(own));
                 both.mul(V::splat(most)).min(V::splat(range))
             };
-            near_box(
-                sequence,
-                other,
-                bounds,
-                range_of(other),
-                hints,
-                range,
-                &mut push,
-            );
+            let reach = |h: f64| ((h + own) * most).min(range);
+            let far = sequence.reach(other, bounds, (own, range), reach);
+            near_box(sequence, other, bounds, far, hints, within, &mut push);
         }
     }
 

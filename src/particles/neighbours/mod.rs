@@ -13,6 +13,7 @@ mod gather;
 mod group;
 mod groups;
 mod lists;
+mod longest;
 mod motion;
 mod near;
 mod pairs;

@@ -6,16 +6,19 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::columns::ColumnGrid;
 use super::facts::{ACTIVE, IMAGE, ImageFacts, ImageState, MOVING};
 use super::group::Group;
+use super::longest::Longest;
 use super::sort::{SCRATCH_WORDS, Sorter, Targets, Walls};
 use crate::{Image, Inactive, MirrorMask, Scatter, resize};
 use numerics::lanes::{LANES, Lanes};
 use numerics::ordered::ordered;
 
 /// The sorted images. Buffers are kept from step to step.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Sequence {
     groups: Vec<Group>,
     /// Beginning of each column and end of the last.
@@ -28,6 +31,8 @@ pub struct Sequence {
     coordinates: [Vec<f64>; 3],
     lengths: Vec<f64>,
     uniform: bool,
+    /// By group: how long these are near a place; empty if they are uniform.
+    longest: Vec<Longest>,
     /// Number of images that are no particles of this rank themselves.
     others: usize,
     /// Groups that have images, by the lower end of their boxes along x, and the longest of those along it (m).
@@ -50,7 +55,7 @@ impl Sequence {
     /// are `uniform`, the sequence does not keep them.
     #[must_use]
     pub fn new(grids: impl IntoIterator<Item = ColumnGrid>, uniform: bool) -> Self {
-        let groups = grids
+        let groups: Vec<_> = grids
             .into_iter()
             .map(|grid| Group {
                 grid,
@@ -63,9 +68,11 @@ impl Sequence {
                 images: 0..0,
             })
             .collect();
+        let kept = if uniform { 0 } else { groups.len() };
         Self {
             groups,
             uniform,
+            longest: (0..kept).map(|_| Longest::default()).collect(),
             ..Self::default()
         }
     }
@@ -132,6 +139,12 @@ impl Sequence {
                 &emit,
             );
         }
+        let (coordinates, lengths) = (&self.coordinates, &self.lengths);
+        let groups = self.longest.par_iter_mut().zip(&self.groups);
+        groups.for_each(|(longest, group)| {
+            let corners = (&group.lower, &group.upper);
+            longest.build(corners, group.images.clone(), coordinates, lengths);
+        });
         self.sort_groups();
     }
 
@@ -267,6 +280,22 @@ impl Sequence {
         self.groups.len()
     }
 
+    /// How far (m) a search among the images of a group has to look around a box (m); `reach` tells how far it finds an image by
+    /// its smoothing length, and `all` where these are uniform; `own` is the length of what searches.
+    #[inline(always)]
+    pub(super) fn reach(
+        &self,
+        group: usize,
+        corners: (&[f64; 3], &[f64; 3]),
+        (own, all): (f64, f64),
+        reach: impl Fn(f64) -> f64,
+    ) -> f64 {
+        match self.longest.get(group) {
+            Some(longest) => longest.reach(corners, own, reach),
+            None => all,
+        }
+    }
+
     /// The indices of a group's images in [`Self::images`].
     #[must_use]
     pub fn group(&self, group: usize) -> Range<usize> {
@@ -282,6 +311,7 @@ impl Sequence {
             + 8 * self.lengths.capacity()
             + 32 * self.walls.capacity()
             + 4 * self.along_x.0.capacity()
+            + self.longest.iter().map(Longest::memory).sum::<usize>()
             + self.sorter.memory()
     }
 
