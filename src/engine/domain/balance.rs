@@ -30,8 +30,10 @@ pub struct Balance {
     counts: Vec<AtomicU64>,
     tallies: Vec<Tally>,
     relay: Relay<Tally>,
-    /// Keys of the coarse planes with particles of this rank in which faces lie.
+    /// Keys of the coarse planes with particles of this rank in which faces lie, and by coarse plane its number among them, or
+    /// [`UNMARKED`].
     marked: Vec<u64>,
+    numbers: Vec<u32>,
     /// Faces of the slabs that this rank owns, in the order of slabs and positions.
     sought: Vec<Sought>,
     /// Faces of a level, as bits.
@@ -88,6 +90,9 @@ pub const MOST_UNEVEN: u64 = 2;
 
 /// The place of a slab of one rank, which nobody cuts.
 const UNCUT: u32 = u32::MAX;
+
+/// The number of a coarse plane without faces.
+const UNMARKED: u32 = u32::MAX;
 
 /// Particles that a task looks at.
 const SHARE: usize = 4096;
@@ -155,6 +160,7 @@ impl Default for Balance {
             tallies: Vec::new(),
             relay: Relay::new(Receivers::OwnersByUpperHalf),
             marked: Vec::new(),
+            numbers: Vec::new(),
             sought: Vec::new(),
             faces: Vec::new(),
         }
@@ -312,13 +318,21 @@ impl Balance {
         work: impl Fn(usize) -> u32 + Sync,
     ) {
         let (spans, places, marked) = (&self.spans, &self.places, &self.marked);
-        let count = FINE * marked.len();
+        let coarse = spans.last().map_or(0, |span| span.first + span.coarse);
+        self.numbers.clear();
+        self.numbers.resize(coarse, UNMARKED);
+        for (number, &key) in (0..).zip(marked) {
+            let coarse = Tally { key, value: 0 };
+            let plane = usize::try_from(coarse.what()).unwrap_or(0);
+            self.numbers[spans[coarse.place()].first + plane] = number;
+        }
+        let (numbers, count) = (&self.numbers, FINE * marked.len());
         count_all(&mut self.counts, count, positions.len(), |i| {
             let span = spans.get(places[i] as usize)?;
             let plane = span.plane(positions[i][axis]);
-            let coarse = key(places[i] as usize, (plane / FINE) as u64);
-            let at = marked.binary_search(&coarse).ok()?;
-            Some((FINE * at + plane % FINE, work(i)))
+            let number = numbers[span.first + plane / FINE];
+            let at = FINE * number as usize + plane % FINE;
+            (number != UNMARKED).then(|| (at, work(i)))
         });
         let tallies = &mut self.tallies;
         tallies.clear();
@@ -391,7 +405,7 @@ impl Balance {
     pub fn memory(&self) -> usize {
         size_of::<Slab>() * self.slabs.capacity()
             + size_of::<Span>() * self.spans.capacity()
-            + 4 * (self.places.capacity() + self.parts.capacity())
+            + 4 * (self.places.capacity() + self.parts.capacity() + self.numbers.capacity())
             + size_of::<(Cut, usize)>() * self.cuts.capacity()
             + self.ends.memory()
             + 8 * (self.counts.capacity() + self.marked.capacity() + self.faces.capacity())

@@ -42,7 +42,7 @@ thread_local! {
 }
 
 /// Particles that a task looks at.
-const SHARE: usize = 4096;
+pub(super) const SHARE: usize = 4096;
 
 /// Ranks whose halos tell of those of all.
 const SOME: usize = 8;
@@ -51,7 +51,7 @@ const SOME: usize = 8;
 const DEEP: u64 = u64::MAX;
 
 /// No place.
-const NOWHERE: Brick = Brick {
+pub(super) const NOWHERE: Brick = Brick {
     lower: [f64::INFINITY; 3],
     upper: [f64::NEG_INFINITY; 3],
 };

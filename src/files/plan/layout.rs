@@ -1,16 +1,12 @@
 //! Decomposition of a case for a number of ranks: particles and messages of each.
 
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-
-use rayon::prelude::*;
-
 use super::outlook::Outlook;
 use super::particles::Particles;
 use crate::preflight::UNEVEN;
 use comm::{Comm, Traffic};
 use engine::domain::{
-    Balance, Decomposition, EXTENT_MESSAGE, InitialLayout, NestedSlabs, RankSpeeds, Sent, Tally,
-    extent_exchange, tally,
+    Balance, EXTENT_MESSAGE, InitialLayout, NestedSlabs, RankSpeeds, Sent, Tally, extent_exchange,
+    owned, tally,
 };
 use engine::step::bytes_of_messages;
 use model::Case;
@@ -127,7 +123,6 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
     let (mut slabs, mut balance) = (slabs.clone(), Balance::default());
     let each = particles.positions.len() as f64 / ranks as f64;
     let positions = particles.positions.as_slice();
-    let mut owned: Vec<AtomicU64> = (0..ranks).map(|_| AtomicU64::default()).collect();
     let mut last = (Vec::new(), 0.0);
     let most = works.map(|work| {
         if work == last.0 {
@@ -139,12 +134,7 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
             (positions, &work),
             &RankSpeeds::default(),
         );
-        owned.fill_with(AtomicU64::default);
-        let owners = positions.par_iter().map(|position| slabs.owner(position));
-        owners.for_each(|owner| {
-            owned[owner].fetch_add(1, Relaxed);
-        });
-        let most = owned.iter_mut().map(|owned| *owned.get_mut()).max();
+        let most = owned(&slabs, positions).into_iter().max();
         last = (work, most.unwrap_or(0) as f64 / each);
         last.1
     });
