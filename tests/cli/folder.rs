@@ -153,12 +153,12 @@ fn a_folder_belongs_to_one_run_at_a_time() {
     assert_same(&run, &reference);
 }
 
-/// A run that is held up in its middle, with checkpoints at steps 10, 20 and 29.
+/// A run that is held up in its middle, with checkpoints at steps 10, 20 and 30.
 fn paused(run: &Path) -> Running {
     let mut command = coarse_run(2, run);
-    strike(&mut command, "pause:0:30");
+    strike(&mut command, "pause:0:31");
     let running = start(command.args(["--set", "output.checkpoint_every_steps=10"]));
-    running.until_step(run, 29);
+    running.until_step(run, 30);
     // That step's row stands before its other files do: who takes the folder away while ranks open one together is told of
     // that file.
     std::thread::sleep(std::time::Duration::from_millis(500));
@@ -190,7 +190,7 @@ fn a_run_whose_folder_is_removed_or_moved_makes_nothing_anew() {
     let ended = running.end().with_code(1);
     for text in [
         format!("it was moved to {}", there.display()),
-        format!("{}/checkpoints/step-00000029", there.display()),
+        format!("{}/checkpoints/step-00000030", there.display()),
     ] {
         assert!(ended.stderr.contains(&text), "{ended:#?}");
     }

@@ -170,8 +170,8 @@ impl Mode for Overlap {
         }
         let (mut bulk, mut core, mut energy, mut drag) = (0.0, 0.0, 0.0, 0.0);
         let back = view.table.overlap(j.size_class, i.size_class);
+        let slope = -constants.kernel.slope(distance);
         if pressed {
-            let slope = -constants.kernel.slope(distance);
             let pressure = s_i * slope_of_energy(here, own) + s_j * slope_of_energy(there, back);
             bulk = i.volume * j.volume * pressure * slope;
             *stiffness += bulk_stiffness(pair, slope);
@@ -193,6 +193,9 @@ impl Mode for Overlap {
             // Half of the pair's energy stands on each side.
             energy += s_i * (0.25 * stress * (depth * depth));
             *stiffness += mean * 2.0 * stress / (own.core_radius * own.core_radius);
+        }
+        if drag > 0.0 {
+            drag = drag.min(most_drag(pair, slope));
         }
         let force = if own.along_normal {
             // The core has no use for normals: it keeps lone particles apart.
@@ -285,6 +288,28 @@ fn isolated_drag(pair: &ParticlePair<Overlap>, slope: f64) -> f64 {
     let approach = pair.separation.approach().max(0.0);
     let volumes = pair.i.volume * pair.j.volume;
     pair.own.isolated_viscosity * share * volumes * slope * (approach * approach)
+}
+
+/// The viscosity (N) of a pair that stops its approach within a step: half of it at the end of the one that led here, before which the
+/// two may have been out of reach of each other, half in the next one. `w μ ṙ/Δt` with the reduced mass μ and the share `w = min(V_j |∇W_ij|/g_i, V_i |∇W_ij|/g_j)`, of which a particle's sum
+/// over its neighbours is one at most.
+#[inline(always)]
+fn most_drag(pair: &ParticlePair<Overlap>, slope: f64) -> f64 {
+    let (view, dt) = (pair.view, pair.view.dt);
+    if dt == 0.0 {
+        return f64::INFINITY;
+    }
+    let (pairs, [v_i, v_j], [m_i, m_j]) = view.meeting([pair.i, pair.j]);
+    let share = |side: &Fraction, volume: f64| {
+        if side.slope > 0.0 {
+            (volume * slope / side.slope).min(1.0)
+        } else {
+            1.0
+        }
+    };
+    let share = share(&pair.here, v_j).min(share(&pair.there, v_i));
+    let approach = pair.separation.approach().max(0.0);
+    pairs * (share * (m_i * m_j / (m_i + m_j)) * approach / dt)
 }
 
 /// A pair's part of `k_i = 2 M V_i Σ_j V_j [(g_i + g_j)|∇W_ij| + (E_i + E_j)|W″_ij|]` (N/m), with

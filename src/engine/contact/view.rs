@@ -116,11 +116,21 @@ impl<'a> ContactView<'a> {
     /// Volume (m^d) over which two particles have a core: the mean of both, as often as there are such pairs.
     #[inline(always)]
     pub(super) fn core_volume(&self, [i, j]: [&ContactParticle; 2]) -> f64 {
+        let (pairs, [a, b], _) = self.meeting([i, j]);
+        pairs * (0.5 * (a + b))
+    }
+
+    /// Of two particles that meet: how many pairs they stand for, and in each of these both volumes (m^d) and both masses (kg).
+    #[inline(always)]
+    pub(super) fn meeting(&self, [i, j]: [&ContactParticle; 2]) -> (f64, [f64; 2], [f64; 2]) {
+        let masses = [i, j].map(|particle| self.particles.mass[particle.slot]);
         if self.table.rings {
             let [a, b] = [i, j].map(|particle| self.table.grain(particle.size_class));
-            return i.volume * j.volume * (0.5 * (a + b)) / (a * b);
+            let [m_i, m_j] = masses;
+            let pairs = i.volume * j.volume / (a * b);
+            return (pairs, [a, b], [m_i * (a / i.whole), m_j * (b / j.whole)]);
         }
-        0.5 * (i.volume + j.volume)
+        (1.0, [i.volume, j.volume], masses)
     }
 
     /// Factor of the stiffness of a particle, see [`gas`](super::gas).
