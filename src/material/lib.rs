@@ -420,6 +420,7 @@ impl Material {
             || self.failure.follows_state()
             || self.porosity.is_some()
             || self.burns()
+            || self.eos.spray_energy().is_some()
     }
 
     /// All laws in their order; without `ALL`, only those that do not follow the state.
@@ -428,8 +429,10 @@ impl Material {
         let rho0 = self.reference_density;
         let cracks = self.failure.hashin.is_some();
         let torn = self.strength.bounds_tension() || cracks;
-        if ALL && (torn || self.failure.follows_state()) {
-            point::limit_expansion(batch, rho0, torn);
+        let spray = self.eos.spray_energy();
+        if ALL && (torn || self.failure.follows_state() || spray.is_some()) {
+            let below = if torn { Some(f64::INFINITY) } else { spray };
+            point::limit_expansion(batch, rho0, below.unwrap_or(f64::NEG_INFINITY));
         }
         let before = [batch.distension, batch.compaction];
         let unshared = [[1.0; LANES], [0.0; LANES]];

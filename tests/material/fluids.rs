@@ -126,7 +126,8 @@ fn a_newtonian_fluid_resists_the_rate_of_shear_alone() {
     assert!((fluid.diffusion_time(0.01) / (0.125 * 1e-4 * 1000.0 / eta) - 1.0).abs() < 1e-14);
 }
 
-/// Below the least density no cold matter pulls; above it, and where it presses, nothing changes.
+/// Below the least density no cold matter pulls, however dense it is; above it, and where it presses, nothing changes. On the way to
+/// vapour the pressure rises from nothing.
 #[test]
 fn thin_matter_of_tillotson_pulls_no_more() {
     let whole = tillotson();
@@ -146,9 +147,17 @@ fn thin_matter_of_tillotson_pulls_no_more() {
             cut.response(2700.0, 2700.0 * ratio, energy),
         );
         let pulls = ratio < 0.9 && free.pressure < 0.0;
-        let expected = if pulls { 0.0 } else { free.pressure };
+        let (expected, slope) = if pulls {
+            (0.0, 0.0)
+        } else {
+            (free.pressure, free.dp_drho)
+        };
         assert_eq!(limited.pressure, expected, "{ratio} {energy}");
-        assert_eq!(limited.dp_drho, free.dp_drho);
+        assert_eq!(limited.dp_drho, slope);
     }
+    let warm = |energy| cut.response(2700.0, 270.0, energy).pressure;
+    assert_eq!(warm(cut.e_iv), 0.0);
+    let middle = warm(0.5 * (cut.e_iv + cut.e_cv));
+    assert!(middle > 0.0 && middle < warm(cut.e_cv));
     assert!(whole.response(2700.0, 2160.0, 0.0).pressure < 0.0);
 }

@@ -59,6 +59,12 @@ pub trait EquationOfState: Listed {
         0.0
     }
 
+    /// Specific energy (J/kg) below which matter that has come apart is drops and void, and expands no farther than spray; none where
+    /// the equation bears any tension or knows of no vapour.
+    fn spray_energy(&self) -> Option<f64> {
+        None
+    }
+
     /// `[a, b]` of the bulk modulus `a (p + b)` (Pa) of a gas at the pressure p (Pa); none of condensed matter, whose
     /// modulus is for the most part that of its reference state.
     fn modulus_over_pressure(&self) -> Option<[f64; 2]> {
@@ -121,6 +127,14 @@ macro_rules! equations_of_state {
             pub fn reference_energy(&self, rho: f64) -> f64 {
                 match self {
                     $( Self::$law(law) => EquationOfState::reference_energy(law, rho), )+
+                }
+            }
+
+            /// See [`EquationOfState::spray_energy`].
+            #[must_use]
+            pub fn spray_energy(&self) -> Option<f64> {
+                match self {
+                    $( Self::$law(law) => law.spray_energy(), )+
                 }
             }
 

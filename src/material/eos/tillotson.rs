@@ -19,8 +19,8 @@
 //! appendix II, and Benz & Asphaug (1999), Icarus 142, 5.
 //!
 //! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½.
-//! The expanded cold branch bears any tension: a spall cut-off ends it, or a least density, below which no
-//! state has a pressure below zero (Schäfer et al. 2016, A&A 590, A19, has no pressure at all there).
+//! The expanded cold branch would bear any tension: a spall cut-off ends it, or a least density, below which no
+//! branch has a pressure below zero (Schäfer et al. 2016, A&A 590, A19, has no pressure at all there).
 
 use super::{EquationOfState, PointResponse};
 use crate::Contradiction;
@@ -80,6 +80,10 @@ impl EquationOfState for Tillotson {
         self.bulk_modulus
     }
 
+    fn spray_energy(&self) -> Option<f64> {
+        (self.least_density > 0.0).then_some(self.e_cv)
+    }
+
     fn at(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
         self.response(rho0, rho, e)
     }
@@ -88,18 +92,9 @@ impl EquationOfState for Tillotson {
 impl Tillotson {
     /// Pressure and derivatives at density `rho` and specific energy `e` (J/kg), for the
     /// reference density `rho0` (kg/m³).
+    #[inline]
     #[must_use]
     pub fn response(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
-        let mut response = self.unlimited(rho0, rho, e);
-        if rho < self.least_density * rho0 && response.pressure < 0.0 {
-            response.pressure = 0.0;
-        }
-        response
-    }
-
-    /// [`Self::response`] without the least density.
-    #[inline]
-    fn unlimited(&self, rho0: f64, rho: f64, e: f64) -> PointResponse {
         let at = self.shared(rho0, rho, e);
         if at.mu >= 0.0 || e <= self.e_iv {
             return self.condensed(&at);
@@ -143,11 +138,12 @@ impl Tillotson {
 
     fn condensed(&self, at: &Shared) -> PointResponse {
         let (a, b) = (self.bulk_modulus, self.quadratic_modulus);
-        PointResponse {
+        let response = PointResponse {
             pressure: self.a * at.rho * at.e + at.hot.pressure + at.mu * (a + b * at.mu),
             dp_drho: self.a * at.e + at.hot.dp_drho + (a + 2.0 * b * at.mu) / at.rho0,
             dp_de: self.a * at.rho + at.hot.dp_de,
-        }
+        };
+        self.cut(at, response)
     }
 
     fn vapour(&self, at: &Shared) -> PointResponse {
@@ -158,11 +154,25 @@ impl Tillotson {
         let dcold_drho =
             self.bulk_modulus / at.rho0 * libm::exp(-self.beta * z) - self.beta * dz_drho * cold;
         let inner = at.hot.pressure + cold;
-        PointResponse {
+        let response = PointResponse {
             pressure: self.a * at.rho * at.e + inner * fade,
             dp_drho: self.a * at.e
                 + (at.hot.dp_drho + dcold_drho - 2.0 * self.alpha * z * dz_drho * inner) * fade,
             dp_de: self.a * at.rho + at.hot.dp_de * fade,
+        };
+        self.cut(at, response)
+    }
+
+    /// None, of a branch that would bear tension below the least density.
+    #[inline(always)]
+    fn cut(&self, at: &Shared, response: PointResponse) -> PointResponse {
+        if response.pressure < 0.0 && at.rho < self.least_density * at.rho0 {
+            return PointResponse {
+                pressure: 0.0,
+                dp_drho: 0.0,
+                dp_de: 0.0,
+            };
         }
+        response
     }
 }

@@ -8,6 +8,8 @@ const TILLOTSON: &str = "constants on which miluphcuda, SWIFT, Phantom, OpenSPH 
 const STEINBERG_6061: &str = "of aluminium 6061-T6: Steinberg-Guinan constants in Uintah, citing \
      Steinberg, UCRL-MA-106439";
 const PLAIN: &str = "no hardening";
+pub(super) const CUT: &str =
+    "no spall limit ends tension: Schäfer et al. (2016), A&A 590, A19, have no pressure below it";
 pub(super) const UNCUT: &str = "none: a spall limit ends tension";
 const FLUID: &str = "without strength: its own is for the case to choose";
 const OKAMOTO: &str = "Okamoto et al. (2020), as miluphcuda quotes it in polycarbonate.till.cfg";
@@ -18,7 +20,7 @@ records! {
         &[
             ("strength.von_mises.hardening_modulus", PLAIN),
             ("strength", STEINBERG_6061),
-            ("eos.tillotson.least_density", UNCUT),
+            ("eos.tillotson.least_density", CUT),
             ("", TILLOTSON),
         ];
     "copper-tillotson", "copper to vaporisation, without strength":
@@ -30,7 +32,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", CUT), ("", TILLOTSON)];
     "granite-tillotson", "granite to vaporisation, without strength":
         {
             tillotson(
@@ -40,7 +42,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", CUT), ("", TILLOTSON)];
     "iron-tillotson", "iron to vaporisation, without strength":
         {
             tillotson(
@@ -50,7 +52,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", TILLOTSON)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", CUT), ("", TILLOTSON)];
     "polycarbonate-tillotson", "polycarbonate (Lexan) to vaporisation, without strength":
         {
             tillotson(
@@ -60,7 +62,7 @@ records! {
                 [0.0; 2],
             )
         },
-        &[("strength", FLUID), ("eos.tillotson.least_density", UNCUT), ("", OKAMOTO)];
+        &[("strength", FLUID), ("eos.tillotson.least_density", CUT), ("", OKAMOTO)];
 }
 
 /// Aluminium, with the strength of 6061-T6.
@@ -102,7 +104,7 @@ fn tillotson(
             e0,
             e_iv,
             e_cv,
-            least_density: 0.0,
+            least_density: 0.9,
         }),
         strength,
         thermal: None,

@@ -1,7 +1,7 @@
 //! Porous materials: a solid with a law of compaction.
 
 use super::Parts;
-use super::impact::{UNCUT, aluminium};
+use super::impact::{CUT, UNCUT, aluminium};
 use super::rocks::{IVANOV, OFF, SAME, SHEAR, basalt};
 use crate::{
     Collins, Compaction, CompactionDamage, Effect, Eos, Failure, HolmquistJohnsonCook,
@@ -55,7 +55,7 @@ records! {
             ("porosity.p_alpha.transition", PLAIN),
             ("porosity", FOAM),
             ("strength", FLUID),
-            ("eos.tillotson.least_density", UNCUT),
+            ("eos.tillotson.least_density", CUT),
             ("", SOLID),
         ];
     "concrete-48", "concrete of 48 MPa, Holmquist-Johnson-Cook strength, crushing and damage":

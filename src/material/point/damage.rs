@@ -46,11 +46,12 @@ use numerics::principal::principal;
 /// Least density of failed matter, over that of the reference state.
 pub(super) const SPRAY: f64 = 0.1;
 
-/// Failed matter does not expand beyond spray, nor does any whose strength bounds the tension (`torn`).
+/// Failed matter does not expand beyond spray, nor does any whose specific energy is below `below` (J/kg): matter whose strength
+/// bounds the tension, and what an equation of state tears before it is all vapour.
 #[inline(always)]
-pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64, torn: bool) {
+pub(crate) fn limit_expansion(point: &mut PointBatch, reference_density: f64, below: f64) {
     for k in 0..LANES {
-        if torn || point.damage[k] >= FAILED {
+        if point.specific_energy[k] < below || point.damage[k] >= FAILED {
             point.density[k] = at_least(point.density[k], SPRAY * reference_density);
         }
     }

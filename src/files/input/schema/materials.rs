@@ -117,7 +117,7 @@ macro_rules! equations_of_state {
                 /// Energy of complete vaporisation.
                 e_cv: Placed<SpecificEnergy>, Positive;
                 /// Density over that of the reference state below which it bears no tension.
-                least_density: Spanned<f64> = 0.0, NotNegative => "it bears any";
+                least_density: Spanned<f64> = 0.9, NotNegative;
             }
             /// `eos.ideal_gas`: ideal or stiffened gas.
             ideal_gas: IdealGasParams => IdealGas {
