@@ -513,7 +513,7 @@ fn ductile_materials_bear_the_spall_strength_that_they_state() {
         }
         checked += 1;
     }
-    assert_eq!(checked, 4);
+    assert_eq!(checked, 8);
 }
 
 /// Coupled damage softens from the start. The strength `(1 − ε/ε_f)(Y₀ + H ε)` is at its maximum at

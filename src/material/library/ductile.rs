@@ -51,6 +51,12 @@ const TOUGH_2024: &str = "K² (1 − ν²)/E of a plane-strain fracture toughnes
 const TOUGH_6061: &str = "K² (1 − ν²)/E of a plane-strain fracture toughness of 29 MPa m^1/2";
 const TOUGH_COPPER: &str = "assumed: some 90 MPa m^1/2 as K² (1 − ν²)/E";
 const TOUGH_4340: &str = "assumed: some 110 MPa m^1/2 of a soft temper as K² (1 − ν²)/E";
+const TOUGH_5083: &str = "assumed: some 43 MPa m^1/2 as K² (1 − ν²)/E";
+const TOUGH_7075: &str = "K² (1 − ν²)/E of a plane-strain fracture toughness of 29 MPa m^1/2";
+const TOUGH_IRON: &str = "assumed: some 100 MPa m^1/2 as K² (1 − ν²)/E";
+const TOUGH_TI: &str = "assumed: some 66 MPa m^1/2 as K² (1 − ν²)/E";
+const SPALL_ABOUT: &str = "assumed: about what plate impacts are reported to give at some 1e5/s; not compared with papers; it \
+     grows with the rate";
 const SHEAR_4340: &str = "assumed: E = 200 GPa, ν = .29, round values of low-alloy steel";
 const SHEAR_5083: &str = "E = 70 GPa, ν = .3, as those who fitted the strength take them";
 const SHEAR_460E: &str = "E = 200 GPa, ν = .33, as those who fitted the strength take them";
@@ -92,8 +98,13 @@ records! {
         failing(
             jc(&AL_5083, [167e6, 596e6, 0.551, 0.001, 0.859], heat(910.0, 293.0, Some(893.0))),
             [0.0261, 0.263, -0.349, 0.247, 16.8],
-        ),
-        sources!(CLAUSEN, SHEAR_5083, LIKE_6061, CLAUSEN);
+        )
+        .spalling(1e9, 24e3),
+        sources!(
+            CLAUSEN, SHEAR_5083, LIKE_6061, CLAUSEN,
+            "failure.fracture_energy": TOUGH_5083,
+            "failure.spall": SPALL_ABOUT
+        );
     "aluminium-6061-ductile", "aluminium 6061-T6, Johnson-Cook strength and failure":
         failing(
             jc(&AL_6061, [324e6, 114e6, 0.42, 0.002, 1.34], heat(896.0, 300.0, Some(925.0))),
@@ -111,9 +122,12 @@ records! {
         failing(
             jc(&AL_7075, [546e6, 678e6, 0.71, 0.024, 1.56], heat(848.0, 300.0, Some(908.0))),
             [-0.068, 0.451, -0.952, 0.036, 0.697],
-        ),
+        )
+        .spalling(1.4e9, 10e3),
         sources!(
             BRAR, STEINBERG, STEINBERG, BRAR,
+            "failure.fracture_energy": TOUGH_7075,
+            "failure.spall": SPALL_ABOUT,
             "density": STEINBERG,
             "strength.johnson_cook.reference_rate": RATE,
             "thermal.reference_temperature": ROOM,
@@ -137,9 +151,12 @@ records! {
         failing(
             jc(&IRON_ALPHA, [175e6, 380e6, 0.32, 0.06, 0.55], heat(452.0, 300.0, Some(1811.0))),
             [-2.2, 5.43, -0.47, 0.016, 0.63],
-        ),
+        )
+        .spalling(2.4e9, 44e3),
         sources!(
             JOHNSON_COOK_IRON, IRON_ELASTIC, MARSH, IRON,
+            "failure.fracture_energy": TOUGH_IRON,
+            "failure.spall": SPALL_ABOUT,
             "density": MARSH,
             "strength.johnson_cook.reference_rate": RATE,
             "thermal.reference_temperature": ROOM,
@@ -181,9 +198,12 @@ records! {
         failing(
             jc(&TI_6AL_4V, [1098e6, 1092e6, 0.93, 0.014, 1.1], heat(525.0, 300.0, Some(1878.0))),
             [-0.09, 0.25, -0.5, 0.014, 3.87],
-        ),
+        )
+        .spalling(4.4e9, 34e3),
         sources!(
             KAY, SHEAR_TI, STEINBERG, LESUER,
+            "failure.fracture_energy": TOUGH_TI,
+            "failure.spall": SPALL_ABOUT,
             "density": STEINBERG,
             "strength.johnson_cook.reference_rate": RATE,
             "thermal.reference_temperature": ROOM,
