@@ -126,6 +126,8 @@ pub struct Body {
     pub smoothing_length: f64,
     /// True if its sums are over the neighbours of its initial configuration, until it tears.
     pub total: bool,
+    /// True if it is a layer of a mass for its area: too thin for waves and bending of its own.
+    pub layer: bool,
     /// Its sites as they were counted once it stood in its final place; absent if nobody has counted them.
     /// A change of shape or lattice makes it void.
     pub filled: Option<Filled>,

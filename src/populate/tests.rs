@@ -31,6 +31,7 @@ pub(super) fn body(shape: Shape, kind: LatticeKind, spacing: f64, angle: f64) ->
         freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
+        layer: false,
         filled: None,
     }
 }

@@ -35,6 +35,7 @@ pub fn body(name: &str, shape: Shape, spacing: f64, velocity: Vec3) -> Body {
         freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
+        layer: false,
         filled: None,
     }
 }

@@ -33,6 +33,7 @@ pub fn case() -> Case {
         freedom: Freedom::default(),
         smoothing_length: 1.3 * spacing,
         total: false,
+        layer: false,
         filled: None,
     };
     Case {

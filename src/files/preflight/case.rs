@@ -6,7 +6,7 @@ use model::{Body, Case, ContactMode};
 
 /// Fewer particles than this across the thinnest section resolve no bending and no wave.
 const ACROSS: f64 = 6.0;
-/// Layers of yarns or walls bend without waves.
+/// Layers of yarns or walls, and those of a mass for their area, bend without waves.
 const ACROSS_LAYER: f64 = 3.0;
 /// Fewer than this across what strikes in three dimensions give rough figures.
 const ACROSS_PROJECTILE: f64 = 10.0;
@@ -119,7 +119,7 @@ pub fn across(case: &Case, approaches: &[Approach]) -> Vec<Across> {
         .map(|(index, body)| Across {
             body: index,
             particles: thickness(body, case) / body.lattice.spacing,
-            least: if case.materials[body.material].has_members() {
+            least: if body.layer || case.materials[body.material].has_members() {
                 ACROSS_LAYER
             } else if strikes(index, body) {
                 ACROSS_PROJECTILE

@@ -23,6 +23,7 @@ pub fn resolve(case: &mut Case, params: &[Spanned<BodyParams>]) -> Result<(), Di
         let (Some(distension), of) = (*distension, of_bodies[b]) else {
             continue;
         };
+        case.bodies[b].layer = true;
         let same = |other: f64| (other / distension - 1.0).abs() < SAME;
         let known = made.iter().find(|&&(m, d, _)| m == of && same(d));
         if let Some(&(_, _, place)) = known {

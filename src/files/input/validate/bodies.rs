@@ -120,6 +120,7 @@ impl Reader<'_> {
             name: name.clone(),
             smoothing_length: self.smoothing * lattice.spacing,
             total: false,
+            layer: false,
             filled: None,
             shape,
             material,
