@@ -19,11 +19,16 @@ pub struct Balance {
     slabs: Vec<Slab>,
     /// Their planes.
     spans: Vec<Span>,
-    /// By particle the place of its slab there, or [`UNCUT`].
+    /// By particle where it is: the place of its slab there, or, once coarse planes have been counted, its own of those of all
+    /// slabs; from [`OWNED`] on the rank that owns it, if nobody cuts its slab.
     places: Vec<u32>,
-    /// How the level before cuts each of its slabs, the first of their parts in `parts`, and the places of those.
+    /// How the level before cuts each of its slabs, the first of their parts in `parts`, and the places of those, or owners.
     cuts: Vec<(Cut, usize)>,
     parts: Vec<u32>,
+    /// By coarse plane of the level before the part of its particles, as in `parts`, or [`DIVIDED`] and a number of those
+    /// in which faces may be: the places of their slabs, and their first and last parts.
+    lots: Vec<u32>,
+    divided: Vec<(u32, [usize; 2])>,
     /// Smallest and largest coordinates of this rank's particles in each, as words.
     ends: Least,
     /// Work by planes, as threads count it.
@@ -88,8 +93,11 @@ const SHARES: u64 = 1 << 31;
 /// shares because its own take little work: what a rank takes of memory goes by their number.
 pub const MOST_UNEVEN: u64 = 2;
 
-/// The place of a slab of one rank, which nobody cuts.
-const UNCUT: u32 = u32::MAX;
+/// Places from here on, less this, are ranks: a slab of one rank, which nobody cuts.
+const OWNED: u32 = 1 << 31;
+
+/// Lots from here on, less this, are numbers of planes in which faces may be.
+const DIVIDED: u32 = 1 << 30;
 
 /// The number of a coarse plane without faces.
 const UNMARKED: u32 = u32::MAX;
@@ -139,6 +147,12 @@ impl Span {
         plane
     }
 
+    /// The lower end of a fine plane (m).
+    #[inline]
+    fn edge(&self, plane: f64) -> f64 {
+        self.lower + self.width * plane
+    }
+
     /// Sets the ends (m).
     #[allow(clippy::cast_precision_loss, reason = "few planes")]
     fn reach(&mut self, lower: f64, upper: f64) {
@@ -155,6 +169,8 @@ impl Default for Balance {
             places: Vec::new(),
             cuts: Vec::new(),
             parts: Vec::new(),
+            lots: Vec::new(),
+            divided: Vec::new(),
             ends: Least::default(),
             counts: Vec::new(),
             tallies: Vec::new(),
@@ -184,7 +200,8 @@ impl Balance {
         self.slabs.clear();
         self.slabs.extend(Some(slabs.whole()).filter(Slab::is_cut));
         self.places.clear();
-        self.places.resize(positions.len(), 0);
+        let place = if self.slabs.is_empty() { OWNED } else { 0 };
+        self.places.resize(positions.len(), place);
         for level in 0..slabs.levels() {
             if level > 0 {
                 self.descend(slabs, level, positions);
@@ -227,7 +244,7 @@ impl Balance {
         let tasks = positions.par_chunks(SHARE).zip(places.par_chunks(SHARE));
         tasks.for_each(|(positions, places)| {
             // Those of one slab follow each other: each run is told once.
-            let mut run = (UNCUT, [u64::MAX; 2]);
+            let mut run = (OWNED, [u64::MAX; 2]);
             for (position, &place) in positions.iter().zip(places) {
                 if place != run.0 {
                     tell_ends(ends, run);
@@ -260,20 +277,32 @@ impl Balance {
         work: impl Fn(usize) -> u32 + Sync,
         share: Option<u64>,
     ) {
-        let (spans, places) = (&self.spans, &self.places);
+        let spans = &self.spans;
         let count = spans.last().map_or(0, |span| span.first + span.coarse);
-        count_all(&mut self.counts, count, positions.len(), |i| {
-            let span = spans.get(places[i] as usize)?;
-            let plane = span.plane(positions[i][axis]) / FINE;
-            Some((span.first + plane, work(i)))
+        let counts = empty(&mut self.counts, count);
+        let tasks = self.places.par_chunks_mut(SHARE);
+        let tasks = tasks.zip(positions.par_chunks(SHARE)).enumerate();
+        // same bits in any order: whole numbers
+        tasks.for_each(|(task, (places, positions))| {
+            let (mut run, mut last) = (Run::new(counts), (OWNED, 0.0, 0));
+            for (k, (place, position)) in places.iter_mut().zip(positions).enumerate() {
+                if let Some(span) = spans.get(*place as usize) {
+                    let x = position[axis];
+                    // Many of a lattice lie in a row.
+                    if (*place, x) != (last.0, last.1) {
+                        last = (*place, x, span.first + span.plane(x) / FINE);
+                    }
+                    *place = u32::try_from(last.2).unwrap_or(OWNED);
+                    run.add(last.2, work(task * SHARE + k));
+                }
+            }
+            run.tell();
         });
         let tallies = &mut self.tallies;
         tallies.clear();
         for (place, span) in spans.iter().enumerate() {
             let counts = &mut self.counts[span.first..span.first + span.coarse];
-            for (plane, count) in (0..).zip(counts) {
-                tallies.extend(told(place, plane, count));
-            }
+            tell_counts(tallies, (place, 0), counts);
         }
         let rank = comm.rank();
         let mine = self
@@ -326,22 +355,35 @@ impl Balance {
             let plane = usize::try_from(coarse.what()).unwrap_or(0);
             self.numbers[spans[coarse.place()].first + plane] = number;
         }
-        let (numbers, count) = (&self.numbers, FINE * marked.len());
-        count_all(&mut self.counts, count, positions.len(), |i| {
-            let span = spans.get(places[i] as usize)?;
-            let plane = span.plane(positions[i][axis]);
-            let number = numbers[span.first + plane / FINE];
-            let at = FINE * number as usize + plane % FINE;
-            (number != UNMARKED).then(|| (at, work(i)))
+        let numbers = &self.numbers;
+        let counts = empty(&mut self.counts, FINE * marked.len());
+        let tasks = places.par_chunks(SHARE).zip(positions.par_chunks(SHARE));
+        // same bits in any order: whole numbers
+        tasks.enumerate().for_each(|(task, (places, positions))| {
+            let (mut run, mut last) = (Run::new(counts), (OWNED, 0.0, 0));
+            for (k, (&place, position)) in places.iter().zip(positions).enumerate() {
+                let number = numbers.get(place as usize).copied().unwrap_or(UNMARKED);
+                if let Some(&key) = marked.get(number as usize) {
+                    let x = position[axis];
+                    if (place, x) != (last.0, last.1) {
+                        let coarse = Tally { key, value: 0 };
+                        let plane = spans[coarse.place()].plane(x) % FINE;
+                        last = (place, x, FINE * number as usize + plane);
+                    }
+                    run.add(last.2, work(task * SHARE + k));
+                }
+            }
+            run.tell();
         });
         let tallies = &mut self.tallies;
         tallies.clear();
         for (&key, counts) in marked.iter().zip(self.counts.chunks_exact_mut(FINE)) {
             let coarse = Tally { key, value: 0 };
-            let planes = FINE as u64 * coarse.what()..;
-            for (plane, count) in planes.zip(counts) {
-                tallies.extend(told(coarse.place(), plane, count));
-            }
+            tell_counts(
+                tallies,
+                (coarse.place(), FINE as u64 * coarse.what()),
+                counts,
+            );
         }
         let all = &*self.relay.send(comm, tallies, add);
         for sought in &self.sought {
@@ -372,6 +414,7 @@ impl Balance {
     }
 
     /// On to the slabs that a level cuts, which are parts of those that the level before has cut.
+    #[allow(clippy::cast_precision_loss, reason = "few planes")]
     fn descend(&mut self, slabs: &NestedSlabs, level: usize, positions: &[[f64; 3]]) {
         self.cuts.clear();
         self.parts.clear();
@@ -380,24 +423,71 @@ impl Balance {
             let cut = self.slabs[place].cut();
             self.cuts.push((cut, self.parts.len()));
             for part in cut.all() {
-                if part.is_cut() {
-                    let place = u32::try_from(self.slabs.len() - before).unwrap_or(UNCUT);
-                    self.parts.push(place);
+                let place = if part.is_cut() {
                     self.slabs.push(part);
+                    self.slabs.len() - before - 1
                 } else {
-                    self.parts.push(UNCUT);
-                }
+                    OWNED as usize + part.ranks().start
+                };
+                self.parts.push(u32::try_from(place).unwrap_or(u32::MAX));
             }
         }
         self.slabs.drain(..before);
-        let (cuts, parts, axis) = (&self.cuts, &self.parts, slabs.axis(level - 1));
-        let places = self.places.par_iter_mut().zip(positions);
-        places.with_min_len(SHARE).for_each(|(place, position)| {
-            if *place != UNCUT {
-                let (cut, first) = &cuts[*place as usize];
-                *place = parts[first + cut.part_at(position[axis], slabs.faces())];
+        let (cuts, parts, faces) = (&self.cuts, &self.parts, slabs.faces());
+        let here = self.ends.here();
+        self.lots.clear();
+        self.divided.clear();
+        for (place, (&(cut, first), span)) in (0..).zip(cuts.iter().zip(&self.spans)) {
+            if here[2 * place as usize] == u64::MAX {
+                // No particle of this rank is there.
+                self.lots.resize(span.first + span.coarse, OWNED);
+                continue;
+            }
+            let mut ends = [0, 0];
+            for plane in 0..span.coarse {
+                // Rounding takes no particle beyond the fine planes beside its own.
+                let lower = span.edge(plane as f64 * FINE as f64 - 1.0);
+                let upper = span.edge((plane + 1) as f64 * FINE as f64 + 1.0);
+                ends = [(ends[0], lower), (ends[1], upper)]
+                    .map(|(part, x)| cut.part_from(part, x, faces));
+                self.lots.push(if ends[0] == ends[1] {
+                    parts[first + ends[0]]
+                } else {
+                    self.divided.push((place, ends));
+                    DIVIDED - 1 + u32::try_from(self.divided.len()).unwrap_or(0)
+                });
+            }
+        }
+        let (lots, divided, axis) = (&self.lots, &self.divided, slabs.axis(level - 1));
+        let tasks = self.places.par_chunks_mut(SHARE);
+        let tasks = tasks.zip(positions.par_chunks(SHARE));
+        tasks.for_each(|(places, positions)| {
+            let mut last = (OWNED, 0.0, 0);
+            for (place, position) in places.iter_mut().zip(positions) {
+                if let Some(&lot) = lots.get(*place as usize) {
+                    *place = lot;
+                    if (DIVIDED..OWNED).contains(&lot) {
+                        let x = position[axis];
+                        if (lot, x) != (last.0, last.1) {
+                            let (slab, ends) = divided[(lot - DIVIDED) as usize];
+                            let (cut, first) = &cuts[slab as usize];
+                            last = (lot, x, parts[first + cut.part_between(ends, x, faces)]);
+                        }
+                        *place = last.2;
+                    }
+                }
             }
         });
+    }
+
+    /// The rank that owns each of the particles at `positions` (m), right after these have cut `slabs`.
+    pub fn owners(&mut self, slabs: &NestedSlabs, positions: &[[f64; 3]]) -> &[u32] {
+        if !self.slabs.is_empty() {
+            self.descend(slabs, slabs.levels(), positions);
+        }
+        let places = self.places.par_iter_mut().with_min_len(SHARE);
+        places.for_each(|place| *place &= !OWNED);
+        &self.places
     }
 
     /// Bytes allocated.
@@ -405,7 +495,9 @@ impl Balance {
     pub fn memory(&self) -> usize {
         size_of::<Slab>() * self.slabs.capacity()
             + size_of::<Span>() * self.spans.capacity()
-            + 4 * (self.places.capacity() + self.parts.capacity() + self.numbers.capacity())
+            + 4 * (self.places.capacity() + self.parts.capacity())
+            + 4 * (self.lots.capacity() + self.numbers.capacity())
+            + size_of::<(u32, [usize; 2])>() * self.divided.capacity()
             + size_of::<(Cut, usize)>() * self.cuts.capacity()
             + self.ends.memory()
             + 8 * (self.counts.capacity() + self.marked.capacity() + self.faces.capacity())
@@ -427,26 +519,58 @@ fn set_ends(spans: &mut [Span], told: &[Tally]) {
     }
 }
 
-/// Counts what `of` tells of each of the elements `0..n`, a place and work, in so many places. All threads count.
-fn count_all(
-    counts: &mut Vec<AtomicU64>,
-    places: usize,
-    n: usize,
-    of: impl Fn(usize) -> Option<(usize, u32)> + Sync,
-) {
+/// So many counts of nothing.
+fn empty(counts: &mut Vec<AtomicU64>, count: usize) -> &[AtomicU64] {
     counts.clear();
-    counts.resize_with(places, AtomicU64::default);
-    let all = (0..n).into_par_iter().with_min_len(SHARE).filter_map(&of);
-    // same bits in any order: whole numbers
-    all.for_each(|(place, work)| {
-        counts[place].fetch_add(work.into(), Relaxed);
-    });
+    counts.resize_with(count, AtomicU64::default);
+    counts
 }
 
-/// What is told of a plane where something was counted.
-fn told(place: usize, plane: u64, count: &mut AtomicU64) -> Option<Tally> {
-    let count = *count.get_mut();
-    (count > 0).then(|| Tally::new(place, plane, count))
+/// Work that a task counts in one place after another. That of particles which follow each other in one place is told at
+/// once.
+struct Run<'a> {
+    counts: &'a [AtomicU64],
+    place: usize,
+    work: u64,
+}
+
+impl<'a> Run<'a> {
+    fn new(counts: &'a [AtomicU64]) -> Self {
+        let (place, work) = (0, 0);
+        Self {
+            counts,
+            place,
+            work,
+        }
+    }
+
+    #[inline]
+    fn add(&mut self, place: usize, work: u32) {
+        if place != self.place {
+            self.tell();
+            (self.place, self.work) = (place, 0);
+        }
+        self.work += u64::from(work);
+    }
+
+    /// To be called at the end.
+    #[inline]
+    fn tell(&self) {
+        if self.work > 0 {
+            self.counts[self.place].fetch_add(self.work, Relaxed);
+        }
+    }
+}
+
+/// Tells of the planes of a slab where something was counted, from one on.
+#[inline]
+fn tell_counts(tallies: &mut Vec<Tally>, (place, first): (usize, u64), counts: &mut [AtomicU64]) {
+    for (plane, count) in (first..).zip(counts) {
+        let count = *count.get_mut();
+        if count > 0 {
+            tallies.push(Tally::new(place, plane, count));
+        }
+    }
 }
 
 /// Seeks the faces of a slab, given the work in its coarse planes and the shares of its parts, if these are known: else
@@ -516,7 +640,7 @@ fn floor(comm: &Comm, work: &[u32]) -> u32 {
 
 /// Joins the ends that a task has found of a slab, if any, with those of the others.
 fn tell_ends(all: &Least, (place, ends): (u32, [u64; 2])) {
-    if place != UNCUT {
+    if place < OWNED {
         all.lower(2 * place as usize, ends);
     }
 }
@@ -594,6 +718,38 @@ mod tests {
         }
     }
 
+    /// What a balance says of owners is what the slabs say, also of layers on which faces lie, and of slabs so thin that
+    /// planes are nearer to each other than numbers.
+    #[test]
+    fn owners_are_those_of_the_slabs() {
+        use super::super::nested::Decomposition;
+        let mut balance = Balance::default();
+        for (side, first, spacing) in [(1_u32, 0.0, 1.0), (12, 0.0, 0.1), (9, 1.0, f64::EPSILON)] {
+            let at = |k: u32| first + spacing * f64::from(k);
+            let all = 0..side.pow(3);
+            let positions: Vec<[f64; 3]> = all
+                .map(|k| [k % side, k / side % side, k / (side * side)].map(at))
+                .collect();
+            let work: Vec<u32> = (0..side.pow(3)).map(|k| k % 5).collect();
+            for (ranks, levels) in [1, 2, 7, 64, 900, 5000]
+                .into_iter()
+                .flat_map(|ranks| (1..=3).map(move |levels| (ranks, levels)))
+            {
+                let mut slabs = NestedSlabs::on_first([2, 0, 1], levels, ranks);
+                let all = (positions.as_slice(), work.as_slice());
+                balance.cut(&Comm::solo(), &mut slabs, all, &RankSpeeds::default());
+                for _ in 0..2 {
+                    let found = balance.owners(&slabs, &positions).iter();
+                    let wanted = positions.iter().map(|position| slabs.owner(position));
+                    assert!(
+                        found.map(|&owner| owner as usize).eq(wanted),
+                        "{side} {ranks} {levels}"
+                    );
+                }
+            }
+        }
+    }
+
     /// One process cuts as many would: each rank gets its share, whatever the levels.
     #[test]
     #[allow(clippy::cast_precision_loss, reason = "few particles")]
@@ -611,7 +767,8 @@ mod tests {
                 balance.cut(&Comm::solo(), &mut slabs, all, &RankSpeeds::default());
                 assert!(slabs.is_sorted());
                 let mut counts = vec![0; ranks];
-                for position in &positions {
+                for (position, &owner) in positions.iter().zip(balance.owners(&slabs, &positions)) {
+                    assert_eq!(owner as usize, slabs.owner(position));
                     counts[slabs.owner(position)] += 1;
                 }
                 let even = positions.len() as f64 / ranks as f64;

@@ -1,7 +1,7 @@
 //! Levels and axes of the cuts of space: chosen so that the fullest halo is small.
 
 use super::balance::Balance;
-use super::halo_count::HaloCount;
+use super::halo_count::{HaloCount, owned};
 use super::nested::NestedSlabs;
 use super::rank_speed::RankSpeeds;
 use comm::Comm;
@@ -57,11 +57,13 @@ impl Choice {
         // Thin slabs that reach over each other take long to count, and are worse than what comes by a factor: then what
         // some ranks have of them is enough.
         let mut is_known = self.seen.is_some();
+        let owners = balance.owners(slabs, positions);
+        let placed = (positions, |i: usize| owners[i]);
         let mut best = if is_known {
-            self.halos.count(comm, slabs, positions, &reach);
+            self.halos.count(comm, slabs, placed, &reach);
             self.halos.largest()
         } else {
-            self.halos.of_some(comm, slabs, positions, &reach)
+            self.halos.of_some(comm, slabs, placed, &reach)
         };
         if self.seen.is_some_and(|seen| is_alike(seen, best)) {
             return;
@@ -74,10 +76,13 @@ impl Choice {
             let trial = &mut self.trial;
             trial.reset(axes, levels, ranks);
             balance.cut(comm, trial, (positions, work), rank_speeds);
-            self.halos.count(comm, trial, positions, &reach);
+            let owners = balance.owners(trial, positions);
+            let placed = (positions, |i: usize| owners[i]);
+            self.halos.count(comm, trial, placed, &reach);
             let largest = self.halos.largest();
             if !is_known && !is_worthwhile(largest, best) {
-                self.halos.count(comm, slabs, positions, &reach);
+                self.halos
+                    .count(comm, slabs, owned(slabs, positions), &reach);
                 (is_known, best) = (true, self.halos.largest());
             }
             if is_worthwhile(largest, best) {
@@ -86,7 +91,8 @@ impl Choice {
             }
         }
         if !is_known {
-            self.halos.count(comm, slabs, positions, &reach);
+            self.halos
+                .count(comm, slabs, owned(slabs, positions), &reach);
             best = self.halos.largest();
         }
         self.seen = Some(best);

@@ -42,7 +42,7 @@ thread_local! {
 }
 
 /// Particles that a task looks at.
-pub(super) const SHARE: usize = 4096;
+const SHARE: usize = 4096;
 
 /// Ranks whose halos tell of those of all.
 const SOME: usize = 8;
@@ -51,22 +51,22 @@ const SOME: usize = 8;
 const DEEP: u64 = u64::MAX;
 
 /// No place.
-pub(super) const NOWHERE: Brick = Brick {
+const NOWHERE: Brick = Brick {
     lower: [f64::INFINITY; 3],
     upper: [f64::NEG_INFINITY; 3],
 };
 
 impl HaloCount {
-    /// Counts for particles at `positions` (m), of which each `reach`es so far (m), on all processes
+    /// Counts for particles at `positions` (m), of which each has an `owner` and `reach`es so far (m), on all processes
     /// of `comm`, which need not be the ranks of the slabs. Collective.
     pub(super) fn count(
         &mut self,
         comm: &Comm,
         slabs: &NestedSlabs,
-        positions: &[[f64; 3]],
+        (positions, owner): (&[[f64; 3]], impl Fn(usize) -> u32 + Sync),
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) {
-        self.find_extents(comm, slabs, positions, reach);
+        self.find_extents(comm, slabs, (positions, owner), reach);
         self.find_halos(comm, slabs, positions, reach);
     }
 
@@ -75,10 +75,10 @@ impl HaloCount {
         &mut self,
         comm: &Comm,
         slabs: &NestedSlabs,
-        positions: &[[f64; 3]],
+        (positions, owner): (&[[f64; 3]], impl Fn(usize) -> u32 + Sync),
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) -> u64 {
-        self.find_extents(comm, slabs, positions, reach);
+        self.find_extents(comm, slabs, (positions, owner), reach);
         let extents = &self.extents;
         let ranks = 0..slabs.ranks();
         let taken: Vec<usize> = ranks.filter(|&rank| !extents[rank].is_empty()).collect();
@@ -123,7 +123,7 @@ impl HaloCount {
         &mut self,
         comm: &Comm,
         slabs: &NestedSlabs,
-        positions: &[[f64; 3]],
+        (positions, owner): (&[[f64; 3]], impl Fn(usize) -> u32 + Sync),
         reach: &(impl Fn(usize) -> f64 + Sync),
     ) {
         self.boxes.begin(Extent::WORDS * slabs.ranks());
@@ -133,17 +133,16 @@ impl HaloCount {
         let tasks = positions.par_chunks(SHARE).zip(owners).enumerate();
         tasks.for_each(|(task, (positions, owners))| {
             // Those of one rank follow each other: each run is told once.
-            let (mut owner, mut region, mut extent) = (0, NOWHERE, Extent::EMPTY);
+            let (mut rank, mut extent) = (0, Extent::EMPTY);
             for (k, (position, of)) in positions.iter().zip(owners).enumerate() {
-                if !region.holds(position) {
-                    lower_box(boxes, owner, extent);
-                    owner = slabs.owner(position);
-                    (region, extent) = (slabs.region(owner), Extent::EMPTY);
+                *of = owner(task * SHARE + k);
+                if *of != rank {
+                    lower_box(boxes, rank, extent);
+                    (rank, extent) = (*of, Extent::EMPTY);
                 }
                 extent.add(position, reach(task * SHARE + k));
-                *of = u32::try_from(owner).expect("few ranks");
             }
-            lower_box(boxes, owner, extent);
+            lower_box(boxes, rank, extent);
         });
         self.boxes.join(comm);
         self.extents.clear();
@@ -247,10 +246,19 @@ impl HaloCount {
     }
 }
 
+/// Positions (m), and who owns each in some slabs.
+pub(super) fn owned<'a>(
+    slabs: &'a NestedSlabs,
+    positions: &'a [[f64; 3]],
+) -> (&'a [[f64; 3]], impl Fn(usize) -> u32 + Sync) {
+    let owner = |i: usize| u32::try_from(slabs.owner(&positions[i])).expect("few ranks");
+    (positions, owner)
+}
+
 /// Joins what a task has found of a rank, if anything, with what the others have.
-fn lower_box(boxes: &Least, rank: usize, extent: Extent) {
+fn lower_box(boxes: &Least, rank: u32, extent: Extent) {
     if !extent.is_empty() {
-        boxes.lower(Extent::WORDS * rank, extent.words());
+        boxes.lower(Extent::WORDS * rank as usize, extent.words());
     }
 }
 
@@ -284,14 +292,15 @@ mod tests {
                 .unzip();
             let mut count = HaloCount::default();
             // What was counted before does not matter.
-            count.count(&Comm::solo(), &NestedSlabs::new(0, vec![0.5; 40]), &positions, &|_| 1.0);
-            count.count(&Comm::solo(), &slabs, &positions, &|i| reach[i]);
+            let before = NestedSlabs::new(0, vec![0.5; 40]);
+            count.count(&Comm::solo(), &before, owned(&before, &positions), &|_| 1.0);
+            count.count(&Comm::solo(), &slabs, owned(&slabs, &positions), &|i| reach[i]);
             let all = (positions.as_slice(), reach.as_slice());
             let counted = tally(&slabs, &Mirrors::default(), all, |_| {});
             let counted: Vec<u64> = counted.iter().map(|tally| tally.halo).collect();
             prop_assert_eq!(&count.halos, &counted);
             prop_assert_eq!(count.largest(), counted.into_iter().max().unwrap());
-            let some = count.of_some(&Comm::solo(), &slabs, &positions, &|i| reach[i]);
+            let some = count.of_some(&Comm::solo(), &slabs, owned(&slabs, &positions), &|i| reach[i]);
             prop_assert!(some <= count.largest());
             let few = (0..slabs.ranks()).filter(|&rank| !count.extents[rank].is_empty()).count() <= SOME;
             prop_assert!(!few || some == count.largest());
@@ -313,7 +322,7 @@ mod tests {
         let even = RankSpeeds::default();
         Balance::default().cut(&Comm::solo(), &mut slabs, (&positions, &work), &even);
         let mut count = HaloCount::default();
-        count.count(&Comm::solo(), &slabs, &positions, &|_| 1.3);
+        count.count(&Comm::solo(), &slabs, owned(&slabs, &positions), &|_| 1.3);
         assert!(count.largest() > 100);
         let tasks = positions.len().div_ceil(SHARE);
         let searches = *count.searches.get_mut();

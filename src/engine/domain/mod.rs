@@ -31,4 +31,4 @@ pub use partition::Partition;
 pub use payload::Payload;
 pub use rank_speed::RankSpeeds;
 pub(crate) use span::Span;
-pub use tally::{EXTENT_MESSAGE, Sent, Tally, extent_exchange, owned, tally};
+pub use tally::{EXTENT_MESSAGE, Sent, Tally, extent_exchange, tally};

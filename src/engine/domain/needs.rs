@@ -163,6 +163,15 @@ impl<'a> Finder<'a> {
         if (0..3).all(is_deep) {
             return;
         }
+        if near.is_own() {
+            // It has no images.
+            for (peer, there) in (0..).zip(self.theirs) {
+                if there.is_near((position, position), reach + there.reach) {
+                    found.push(needed(i, peer, 1));
+                }
+            }
+            return;
+        }
         for (peer, there) in (0..).zip(self.theirs) {
             note(self, (i, position), (peer, there), (near, reach), found);
         }
@@ -186,12 +195,16 @@ fn note(
         }
     }
     if needs != 0 {
-        #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
-        let particle = i as u32;
-        found.push(Needed {
-            particle,
-            needs,
-            peer,
-        });
+        found.push(needed(i, peer, needs));
+    }
+}
+
+fn needed(i: usize, peer: u16, needs: u8) -> Needed {
+    #[allow(clippy::cast_possible_truncation, reason = "particles fit u32")]
+    let particle = i as u32;
+    Needed {
+        particle,
+        needs,
+        peer,
     }
 }

@@ -172,7 +172,17 @@ impl Cut {
     /// Index of the part, between these faces (m), that holds a coordinate.
     #[inline(always)]
     pub(super) fn part_at(&self, x: f64, faces: &[f64]) -> usize {
-        let (mut least, mut end) = (0, self.parts - 1);
+        self.part_between([0, self.parts - 1], x, faces)
+    }
+
+    /// The same, known to be between two parts.
+    #[inline(always)]
+    pub(super) fn part_between(
+        &self,
+        [mut least, mut end]: [usize; 2],
+        x: f64,
+        faces: &[f64],
+    ) -> usize {
         // The first part whose upper face is above.
         while least < end {
             let middle = usize::midpoint(least, end);
@@ -183,6 +193,15 @@ impl Cut {
             }
         }
         least
+    }
+
+    /// As [`Self::part_at`], sought from a part on that is not beyond.
+    #[inline(always)]
+    pub(super) fn part_from(&self, mut part: usize, x: f64, faces: &[f64]) -> usize {
+        while part + 1 < self.parts && faces[self.place(part + 1)] <= x {
+            part += 1;
+        }
+        part
     }
 }
 

@@ -3,11 +3,9 @@
 //! Owners, peers and needs are those of the halo itself, by the same code.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use rayon::prelude::*;
 
-use super::halo_count::{NOWHERE, SHARE};
 use super::needs::{Extent, Finder, MYSELF, Needed};
 use super::nested::{Decomposition, NestedSlabs};
 use particles::Mirrors;
@@ -48,26 +46,6 @@ pub fn extent_exchange(slabs: &NestedSlabs, farthest: f64, mut emit: impl FnMut(
     for from in 0..slabs.ranks() {
         slabs.near(from, 2.0 * farthest, |to| emit(from, to));
     }
-}
-
-/// Particles of each rank, of those at `positions` (m).
-#[must_use]
-pub fn owned(slabs: &NestedSlabs, positions: &[[f64; 3]]) -> Vec<u64> {
-    let mut owned: Vec<AtomicU64> = (0..slabs.ranks()).map(|_| AtomicU64::default()).collect();
-    positions.par_chunks(SHARE).for_each(|positions| {
-        // Those of one rank follow each other: each run is told once.
-        let (mut owner, mut region, mut count) = (0, NOWHERE, 0);
-        for position in positions {
-            if !region.holds(position) {
-                owned[owner].fetch_add(count, Relaxed);
-                owner = slabs.owner(position);
-                (region, count) = (slabs.region(owner), 0);
-            }
-            count += 1;
-        }
-        owned[owner].fetch_add(count, Relaxed);
-    });
-    owned.iter_mut().map(|owned| *owned.get_mut()).collect()
 }
 
 /// Counts for particles at `positions` (m), which reach so far (m), and tells what each rank sends, by

@@ -6,7 +6,7 @@ use crate::preflight::UNEVEN;
 use comm::{Comm, Traffic};
 use engine::domain::{
     Balance, EXTENT_MESSAGE, InitialLayout, NestedSlabs, RankSpeeds, Sent, Tally, extent_exchange,
-    owned, tally,
+    tally,
 };
 use engine::step::bytes_of_messages;
 use model::Case;
@@ -134,7 +134,11 @@ fn uneven(case: &Case, particles: &Particles, slabs: &NestedSlabs, outlook: &Out
             (positions, &work),
             &RankSpeeds::default(),
         );
-        let most = owned(&slabs, positions).into_iter().max();
+        let mut owned = vec![0_u64; ranks];
+        for &owner in balance.owners(&slabs, positions) {
+            owned[owner as usize] += 1;
+        }
+        let most = owned.into_iter().max();
         last = (work, most.unwrap_or(0) as f64 / each);
         last.1
     });
