@@ -304,12 +304,12 @@ fn what_cannot_be_restarted_is_left_alone() {
     let manifest = fs::read_to_string(newest.join("manifest.json")).unwrap();
     fs::write(
         newest.join("manifest.json"),
-        manifest.replace("\"format\": 2", "\"format\": 99"),
+        manifest.replace("\"format\": 3", "\"format\": 99"),
     )
     .unwrap();
     let said = complaint_alone(&["restart", out]);
     assert!(
-        said.contains("has format 99, this program reads format 2"),
+        said.contains("has format 99, this program reads format 3"),
         "{said}"
     );
     fs::write(newest.join("manifest.json"), manifest).unwrap();

@@ -39,6 +39,7 @@ fn sign(checkpoint: &Path) {
     let state = fs::read(checkpoint::state_file(checkpoint)).unwrap();
     let mut manifest = checkpoint::manifest(checkpoint).unwrap();
     manifest.size = state.len() as u64;
+    manifest.leaf = None;
     manifest.sha256 = vec![format!("{:x}", Sha256::digest(&state))];
     write_json(&checkpoint.join(checkpoint::MANIFEST), &manifest).unwrap();
 }
@@ -100,6 +101,29 @@ fn a_bit_flipped_anywhere_is_told_before_hdf5_sees_it() {
     assert!(refusal(&path).contains("it has 0 bytes"));
 }
 
+/// The format before had a digest of each block alone.
+#[test]
+fn a_checkpoint_of_the_format_before_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), 3, 1);
+    sign(&path);
+    let manifest = path.join(checkpoint::MANIFEST);
+    let text = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, text.replace("\"format\": 3", "\"format\": 2")).unwrap();
+    let mut particles = ParticleStore::default();
+    let restored = checkpoint::read(&Comm::solo(), &path, &mut particles).unwrap();
+    assert_eq!((restored.step, restored.particles), (3, 40));
+    flip(&checkpoint::state_file(&path));
+    assert!(refusal(&path).contains("state.h5 is damaged: bytes 0 to "));
+}
+
+fn flip(state: &Path) {
+    let mut bytes = fs::read(state).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    fs::write(state, &bytes).unwrap();
+}
+
 #[test]
 fn a_broken_manifest_or_another_format_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -107,8 +131,8 @@ fn a_broken_manifest_or_another_format_is_told() {
     let manifest = path.join(checkpoint::MANIFEST);
     let text = fs::read_to_string(&manifest).unwrap();
 
-    fs::write(&manifest, text.replace("\"format\": 2", "\"format\": 3")).unwrap();
-    assert!(refusal(&path).contains("has format 3, this program reads format 2"));
+    fs::write(&manifest, text.replace("\"format\": 3", "\"format\": 4")).unwrap();
+    assert!(refusal(&path).contains("has format 4, this program reads format 3"));
 
     fs::write(&manifest, text.replace("\"step\": 3", "\"step\": 4")).unwrap();
     assert!(refusal(&path).contains("it is of step 3, manifest.json of step 4"));

@@ -197,7 +197,7 @@ fn info_tells_what_is_there() {
         assert!(told.contains(part), "{part} in\n{told}");
     }
     let checkpoint = folder.checkpoint_folders().unwrap().remove(0);
-    assert!(describe(&checkpoint).unwrap().contains("format 2"));
+    assert!(describe(&checkpoint).unwrap().contains("format 3"));
     let unknown = describe(place.path()).unwrap_err().to_string();
     assert!(unknown.contains("is neither a run folder"), "{unknown}");
 }

@@ -256,6 +256,7 @@ fn signed(manifest: &str, state: &Path, changes: &[Change]) -> String {
     let state = fs::read(state).unwrap();
     let mut manifest: serde_json::Value = serde_json::from_str(manifest).unwrap();
     manifest["size"] = state.len().into();
+    manifest.as_object_mut().unwrap().remove("leaf");
     manifest["sha256"] = vec![format!("{:x}", Sha256::digest(&state))].into();
     for change in changes {
         if let Change::Manifest(key, value) = change {

@@ -293,7 +293,7 @@ const PIECES: [&str; 12] = [
     "\u{ff}",
     "\n",
 ];
-const KEYS: [&str; 9] = [
+const KEYS: [&str; 10] = [
     "format",
     "step",
     "time",
@@ -301,6 +301,7 @@ const KEYS: [&str; 9] = [
     "ranks",
     "size",
     "block",
+    "leaf",
     "sha256",
     "x",
 ];

@@ -198,6 +198,7 @@ fn a_manifest_that_cannot_be_is_refused() {
             "18446744073709551615",
             "has blocks of 18446744073709551615 bytes",
         ),
+        ("leaf", "5", "has leaves of 5 bytes"),
         ("sha256", "[]", "0 digests of blocks of 1048576 bytes"),
         (
             "sha256",

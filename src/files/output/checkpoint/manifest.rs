@@ -7,8 +7,10 @@ use uuid::Uuid;
 
 use crate::output::{OutputError, ResultExtents, RunFolder, files};
 
-/// Number of the format; a reader takes its own only.
-pub const FORMAT: u64 = 2;
+/// Number of the format.
+pub const FORMAT: u64 = 3;
+/// The format that a reader takes, too: its blocks have digests of their own.
+const BEFORE: u64 = 2;
 /// The file that makes a folder a checkpoint.
 pub const MANIFEST: &str = "manifest.json";
 /// Advice on a damaged checkpoint.
@@ -38,7 +40,10 @@ pub struct Manifest {
     pub size: u64,
     /// Bytes of a digested block.
     pub block: u64,
-    /// SHA-256 of each block of the state file.
+    /// Bytes of the leaves whose digests are summed for a block; none if a block has its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub leaf: Option<u64>,
+    /// The digest of each block of the state file: the sum of the SHA-256 of its leaves, or its own.
     pub sha256: Vec<String>,
     /// The results of the run up to here.
     #[serde(default)]
@@ -90,7 +95,7 @@ fn parse_manifest(folder: &Path, text: &[u8]) -> Result<Manifest, OutputError> {
         }
     };
     let head: Head = serde_json::from_slice(text).map_err(broken)?;
-    if head.format != FORMAT {
+    if ![BEFORE, FORMAT].contains(&head.format) {
         return Err(OutputError::Format {
             path: folder.to_owned(),
             found: head.format,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::manifest::{MANIFEST, Manifest, OLDER, manifest};
 use super::state_file::{FIELDS, row_type, size_of, state_file};
+use crate::output::digest::{Kind, LEAF};
 use crate::output::h5::Content;
 use crate::output::{Block, OutputError, agree, digest, from_root};
 use comm::Comm;
@@ -76,7 +77,15 @@ fn verify(comm: &Comm, state: &Path, manifest: &Manifest) -> Result<(), OutputEr
         let what = format!("{MANIFEST} has blocks of {} bytes; {OLDER}", manifest.block);
         return Err(OutputError::damaged(state, what));
     }
-    let digests = digest::of_file(comm, state, size, manifest.block)?;
+    let kind = match manifest.leaf {
+        None => Kind::Whole,
+        Some(LEAF) => Kind::Leaves,
+        Some(bytes) => {
+            let what = format!("{MANIFEST} has leaves of {bytes} bytes; {OLDER}");
+            return Err(OutputError::damaged(state, what));
+        }
+    };
+    let digests = digest::of_file(comm, state, (size, manifest.block), kind)?;
     if digests == manifest.sha256 {
         return Ok(());
     }

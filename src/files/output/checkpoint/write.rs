@@ -67,7 +67,7 @@ fn write_files(
 ) -> Result<(), OutputError> {
     let state = state_file(folder);
     rows.plan(comm, &particles.id[..particles.owned()])?;
-    let mut file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?;
+    let mut file = Writer::create_aligned(comm, &state, rows.sharing().alignment)?.hashed();
     file.number("/", "format", &FORMAT)?;
     file.number("/", "step", &meta.step)?;
     file.number("/", "time", &meta.time)?;
@@ -87,7 +87,7 @@ fn write_files(
         file.note(&path, "unit", field.unit)?;
         file.note(&path, "description", field.description)?;
     }
-    file.close()?;
+    let leaves = file.close_hashed()?;
 
     let size = size_of(comm, &state)?;
     let block = digest::block_of(size);
@@ -102,7 +102,8 @@ fn write_files(
         ranks: comm.size(),
         size,
         block,
-        sha256: digest::of_file(comm, &state, size, block)?,
+        leaf: Some(digest::LEAF),
+        sha256: leaves.finish(comm, &state, (size, block))?,
         results: meta.results.clone(),
     };
     on_root(comm, || write_json(&folder.join(MANIFEST), &manifest))

@@ -10,6 +10,7 @@ use hdf5::{Dataset, File, H5Type, Location};
 use hdf5_sys::h5a::H5Awrite;
 use hdf5_sys::h5f::{H5F_scope_t, H5Fflush};
 
+use crate::output::digest::Leaves;
 use crate::output::{Block, OutputError, agree, files, on_root};
 use comm::{Comm, pieces};
 
@@ -34,6 +35,8 @@ pub struct Writer<'a> {
     direct: Option<Direct>,
     /// The file itself, whatever becomes of its name.
     held: std::fs::File,
+    /// Digests of what is written, if they are wanted.
+    leaves: Option<Leaves>,
 }
 
 impl<'a> Writer<'a> {
@@ -80,7 +83,15 @@ impl<'a> Writer<'a> {
             file: Some(file),
             direct: Direct::of(path),
             held,
+            leaves: None,
         })
+    }
+
+    /// The same, with the digests of what it is given, for [`Self::close_hashed`].
+    #[must_use]
+    pub fn hashed(mut self) -> Self {
+        self.leaves = Some(Leaves::default());
+        self
     }
 
     /// Makes a group.
@@ -172,11 +183,22 @@ impl<'a> Writer<'a> {
     ) -> Result<(), OutputError> {
         let dataset = self.agreed_dataset(name, row, block.total)?;
         let offset = self.direct_offset(&dataset, row, block);
+        // What has no place in the file yet is read once it is whole.
+        let place = dataset.offset();
+        let mut leaves = self.leaves.take();
+        if let (Some(leaves), Some(place)) = (&mut leaves, place) {
+            let at = |rows: u64| place + rows * row.bytes() as u64;
+            let mine = at(block.first)..at(block.first + block.count as u64);
+            leaves.begin(place..at(block.total), mine);
+        }
         let mut piece = Piece::take();
         let mut ranges = pieces(block.count, PIECE / row.bytes());
         let written = ranges.try_for_each(|rows| {
             let bytes = &mut piece.bytes()[..rows.len() * row.bytes()];
             fill(rows.clone(), bytes);
+            if let (Some(leaves), true) = (&mut leaves, place.is_some()) {
+                leaves.take(bytes);
+            }
             let chunk = Block {
                 first: block.first + rows.start as u64,
                 count: rows.len(),
@@ -186,6 +208,7 @@ impl<'a> Writer<'a> {
             self.write(name, &dataset, row, offset, chunk, bytes)
         });
         piece.keep();
+        self.leaves = leaves;
         agree(self.comm, written)
     }
 
@@ -248,6 +271,19 @@ impl<'a> Writer<'a> {
     /// # Errors
     /// [`OutputError::Hdf5`] or [`OutputError::Io`].
     pub fn close(mut self) -> Result<(), OutputError> {
+        self.end()
+    }
+
+    /// As [`Self::close`]; gives what [`Self::hashed`] knows of the file.
+    ///
+    /// # Errors
+    /// As [`Self::close`].
+    pub fn close_hashed(mut self) -> Result<Leaves, OutputError> {
+        self.end()?;
+        Ok(self.leaves.take().unwrap_or_default())
+    }
+
+    fn end(&mut self) -> Result<(), OutputError> {
         let rest = self
             .direct
             .take()
