@@ -71,7 +71,9 @@ pub fn library() -> String {
     // Some versions have several lines, or continue with build options.
     let first = version.lines().next().unwrap_or_default();
     let first = first.split(',').next().unwrap_or_default();
-    let words: Vec<&str> = first.split_whitespace().collect();
+    // MPICH says "MPICH Version:".
+    let words = first.split_whitespace().filter(|word| *word != "Version:");
+    let words: Vec<&str> = words.collect();
     words.join(" ")
 }
 
@@ -223,13 +225,13 @@ impl Comm {
     /// Replaces each number by its largest over ranks.
     #[track_caller]
     pub fn max_u64(&self, values: &mut [u64]) {
-        self.reduce(values, SystemOperation::max(), u64::max);
+        self.reduce_unsigned(values, SystemOperation::max(), i64::max);
     }
 
     /// Replaces each number by its smallest over ranks.
     #[track_caller]
     pub fn min_u64(&self, values: &mut [u64]) {
-        self.reduce(values, SystemOperation::min(), u64::min);
+        self.reduce_unsigned(values, SystemOperation::min(), i64::min);
     }
 
     /// Largest of a number over ranks.
@@ -300,6 +302,22 @@ impl Comm {
             Transport::Mpi(world) => broadcast_by_mpi(world, from, bytes),
             Transport::Virtual(rank) => rank.broadcast(from, bytes),
         }
+    }
+
+    /// Combines numbers over ranks by an operation that compares. MPICH 4.0 compares unsigned numbers as signed ones
+    /// (`MPI_MIN` of 5 and 2⁶⁴ − 1 is the latter), so they are signed ones in the same order meanwhile.
+    #[track_caller]
+    fn reduce_unsigned(
+        &self,
+        values: &mut [u64],
+        operation: SystemOperation,
+        combine: fn(i64, i64) -> i64,
+    ) {
+        let signed: &mut [i64] = bytemuck::cast_slice_mut(values);
+        let turn = |values: &mut [i64]| values.iter_mut().for_each(|value| *value ^= i64::MIN);
+        turn(signed);
+        self.reduce(signed, operation, combine);
+        turn(signed);
     }
 
     /// Combines values of eight bytes over ranks, by MPI's operation or the function that does the same.

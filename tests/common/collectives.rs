@@ -26,6 +26,15 @@ pub fn check_collectives(comm: &Comm) {
         comm.min_u64(&mut least);
         let sums = over(|a, b| a + b);
         assert_eq!([sum, most, least], [sums, over(u64::max), over(u64::min)]);
+        // What has the highest bit is large, not negative.
+        let (mut most, mut least) = (
+            [u64::MAX - me as u64, me as u64],
+            [u64::MAX >> me, me as u64],
+        );
+        comm.max_u64(&mut most);
+        comm.min_u64(&mut least);
+        let last = comm.size() as u64 - 1;
+        assert_eq!([most, least], [[u64::MAX, last], [u64::MAX >> last, 0]]);
         let mut signed = mine.map(|v| -v.cast_signed());
         comm.sum_i64(&mut signed);
         assert_eq!(signed, sums.map(|v| -v.cast_signed()));

@@ -624,6 +624,10 @@ fn a_file_that_mpi_cannot_open_on_one_rank_ends_all() {
         });
         return;
     }
+    if comm::library().starts_with("MPICH") {
+        eprintln!("skipped: it counts the descriptors that Open MPI takes");
+        return;
+    }
     let told = |left: usize| {
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join("left"), left.to_string()).unwrap();

@@ -40,7 +40,7 @@ pub fn on_ranks(test: &str, ranks: usize, folder: &Path, task: impl Fn(&Comm, &P
 /// Runs the test called `test`, with its module, on so many ranks, all in one folder; its ranks may end the job.
 pub fn launch(test: &str, ranks: usize, folder: &Path) -> Output {
     Command::new("timeout")
-        .args(["120", "mpirun", "--quiet", "-n", &ranks.to_string()])
+        .args(["120", "mpirun", "-n", &ranks.to_string()])
         .arg(std::env::current_exe().unwrap())
         .args(["--exact", test, "--include-ignored"])
         .args(["--nocapture", "--test-threads=1"])
@@ -50,6 +50,7 @@ pub fn launch(test: &str, ranks: usize, folder: &Path) -> Output {
         .env("OMPI_MCA_hwloc_base_binding_policy", "none")
         .env("OMPI_MCA_rmaps_base_oversubscribe", "1")
         .env("OMPI_MCA_mpi_yield_when_idle", "1")
+        .env("OMPI_MCA_orte_execute_quiet", "1")
         .output()
         .expect("mpirun starts")
 }

@@ -125,8 +125,8 @@ pub fn in_words(bytes: f64) -> String {
     format!("{value:.digits$} {unit}")
 }
 
-/// Ranks on this machine.
-fn local_ranks(ranks: usize) -> usize {
+/// Ranks on this machine, of so many, as Open MPI and MPICH tell.
+pub fn local_ranks(ranks: usize) -> usize {
     let names = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
     let found = names
         .iter()

@@ -12,6 +12,7 @@ use crate::output::h5::abandoned;
 use crate::output::{
     Outlook, OutputError, Phase, RunFolder, Status, VERSION, agree, commit, same_on_all,
 };
+use crate::preflight::memory::local_ranks;
 use comm::{Comm, Session, abort_job, library};
 use model::Case;
 
@@ -245,12 +246,8 @@ fn wanted_by_rayon(cores: usize, tells: bool) -> Option<usize> {
 /// Cores that this process may use over ranks of this machine, unless `RAYON_NUM_THREADS` says
 /// otherwise.
 fn default_threads(comm: &Comm, cores: usize) -> usize {
-    let number = |name| std::env::var(name).ok()?.parse::<usize>().ok();
     wanted_by_rayon(cores, comm.is_root())
-        .unwrap_or_else(|| {
-            let local = number("OMPI_COMM_WORLD_LOCAL_SIZE").unwrap_or_else(|| comm.size());
-            cores / local.max(1)
-        })
+        .unwrap_or_else(|| cores / local_ranks(comm.size()))
         .max(1)
 }
 
