@@ -4,10 +4,11 @@
 SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help deps test-deps release impact test run-tests check check-fast validation fuzz fuzz-memory soak pictures image deb contact-lab bench bench-kernels docs book clean
+.PHONY: help deps test-deps release impact test run-tests check check-fast validation fuzz fuzz-memory soak mpich pictures image deb contact-lab bench bench-kernels docs book clean
 
 # The environment of every build and launch: Open MPI's settings, HDF5_DIR.
 ENV := source jobs/env.sh;
+PROGRAM := target/$(if $(filter mpich,$(WHIPPLE_MPI)),mpich/)release/whipple
 VENV := target/venv
 TOOLS := target/tools
 MDBOOK := 0.5.4
@@ -22,10 +23,10 @@ GLASS := --set body.plate.lattice=glass --set body.sphere.lattice=glass
 
 impact: release ## Run the main job on two ranks, draw its pictures, write the page that tells it
 	jobs/run.sh -n 2 inputs/quarter-impact $(GLASS) --out runs/quarter-impact --force
-	$(ENV) target/release/whipple plot runs/quarter-impact --panels
-	$(ENV) target/release/whipple plot runs/quarter-impact --history
-	$(ENV) target/release/whipple info runs/quarter-impact
-	$(ENV) target/release/whipple report runs/quarter-impact
+	$(ENV) $(PROGRAM) plot runs/quarter-impact --panels
+	$(ENV) $(PROGRAM) plot runs/quarter-impact --history
+	$(ENV) $(PROGRAM) info runs/quarter-impact
+	$(ENV) $(PROGRAM) report runs/quarter-impact
 
 test: run-tests ## Run the test suite, 12 to 21 minutes on two cores with its build
 
@@ -54,6 +55,9 @@ fuzz-memory: test-deps ## Read random files of results under valgrind for SECOND
 soak: release ## Kill, stop and restart a run at random for MINUTES=30, with SEED=1; the bits must stay
 	tests/soak.sh -m $(or $(MINUTES),30) -s $(or $(SEED),1)
 
+mpich: ## Build with MPICH and with Open MPI, compare their bits, run tests of real ranks with MPICH
+	jobs/mpich.sh
+
 validation: test-deps $(VENV)/ready ## Run the slow physics tests and draw the pictures
 	$(ENV) jobs/cargo-test.sh --ignored
 	$(MAKE) pictures
@@ -65,7 +69,7 @@ contact-lab: release ## Measure contact on small cases, write the tables of the 
 	jobs/contact-lab.sh
 
 bench: release ## Time fixed cases on threads and ranks, beside other programs where installed
-	$(ENV) target/release/whipple bench --json target/bench.json
+	$(ENV) $(PROGRAM) bench --json target/bench.json
 	if [ -x benches/peers/run.sh ]; then $(ENV) benches/peers/run.sh; fi
 
 bench-kernels: deps ## Time the inner loops alone, for each instruction set
@@ -96,6 +100,7 @@ release: deps
 image: ## Make target/whipple.sif, a container, with Apptainer
 	mkdir -p target
 	apptainer build --force --build-arg commit=$$(git describe --always --dirty 2>/dev/null || echo unknown) \
+	    --build-arg mpi=$(or $(WHIPPLE_MPI),openmpi) \
 	    target/whipple.sif jobs/whipple.def
 
 deb: release ## Make target/debian/whipple_….deb: the program, man pages, completions, jobs/ and inputs/

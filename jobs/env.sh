@@ -9,6 +9,33 @@ if ! command -v cargo >/dev/null && [ -x "$HOME/.cargo/bin/cargo" ]; then
     PATH=$HOME/.cargo/bin:$PATH
 fi
 
+# WHIPPLE_MPI=mpich takes MPICH where Debian has it beside Open MPI: its wrapper and launcher, by scripts that come first on
+# the path, its HDF5, and a folder of its own for what is built.
+case ${WHIPPLE_MPI:-} in
+    '' | openmpi) ;;
+    mpich)
+        whipple_scripts=$whipple_root/target/mpich/bin
+        if command -v mpirun.mpich >/dev/null; then
+            mkdir -p "$whipple_scripts"
+            # Not links: the launcher looks for its own programs where its name leads.
+            for whipple_name in mpicc mpirun mpiexec; do
+                [ ! -x "$whipple_scripts/$whipple_name" ] || continue
+                whipple_new=$(mktemp "$whipple_scripts/XXXXXX")
+                printf '#!/bin/sh\nexec %s "$@"\n' "$(command -v "$whipple_name.mpich")" >"$whipple_new"
+                chmod 755 "$whipple_new"
+                mv "$whipple_new" "$whipple_scripts/$whipple_name"
+            done
+            case :$PATH: in
+                *":$whipple_scripts:"*) ;;
+                *) PATH=$whipple_scripts:$PATH ;;
+            esac
+            export MPICC=$whipple_scripts/mpicc
+        fi
+        export WHIPPLE_MPI CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$whipple_root/target/mpich}
+        ;;
+    *) echo "error: WHIPPLE_MPI is openmpi or mpich, not $WHIPPLE_MPI" >&2 ;;
+esac
+
 # Open MPI binds each of one or two ranks to a single core, which all threads of the rank would
 # then share; it refuses more ranks than cores; and an idle rank spins: 4 ranks on 2 cores take
 # 17.5 ms a step that way and 1.3 ms with these three. Batch jobs pin instead (jobs/run.sh).
@@ -28,7 +55,7 @@ fi
 
 # Parallel HDF5. The build takes $HDF5_DIR, else what `pkg-config hdf5` names, else a serial
 # library, which it then refuses. So HDF5_DIR is set wherever pkg-config does not lead to the
-# right one: to a folder of links to Debian's Open MPI flavour, or to a module's folder.
+# right one: to a folder of links to Debian's flavour for the MPI, or to a module's folder.
 
 # Whether an include folder belongs to a parallel HDF5.
 whipple_parallel_hdf5() {
@@ -43,19 +70,22 @@ whipple_pkg_folder() {
 
 # Sets HDF5_DIR where the build needs it; fails when there is no parallel HDF5.
 whipple_find_hdf5() {
-    local links=$whipple_root/target/hdf5 plain openmpi dir wrapper
-    if [ -n "${HDF5_DIR:-}" ] && [ "$HDF5_DIR" != "$links" ]; then
+    local flavour=${WHIPPLE_MPI:-openmpi} plain flavoured dir wrapper
+    local links=$whipple_root/target/hdf5
+    [ "$flavour" = openmpi ] || links=$links-$flavour
+    case ${HDF5_DIR:-} in "$whipple_root"/target/hdf5*) unset HDF5_DIR ;; esac
+    if [ -n "${HDF5_DIR:-}" ]; then
         whipple_parallel_hdf5 "$HDF5_DIR/include"
         return
     fi
     plain=$(whipple_pkg_folder I hdf5)
-    openmpi=$(whipple_pkg_folder I hdf5-openmpi)
-    if [ -n "$openmpi" ]; then
-        [ "$plain" != "$openmpi" ] || return 0
+    flavoured=$(whipple_pkg_folder I "hdf5-$flavour")
+    if [ -n "$flavoured" ]; then
+        [ "$plain" != "$flavoured" ] || return 0
         # Another HDF5 is Debian's default, and this one's headers and library lie apart.
         mkdir -p "$links"
-        ln -sfn "$openmpi" "$links/include"
-        ln -sfn "$(whipple_pkg_folder L hdf5-openmpi)" "$links/lib"
+        ln -sfn "$flavoured" "$links/include"
+        ln -sfn "$(whipple_pkg_folder L "hdf5-$flavour")" "$links/lib"
         export HDF5_DIR=$links
         return 0
     fi

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what the build needs beside Rust and a C compiler: Open MPI, parallel HDF5, libclang
+# Installs what the build needs beside Rust and a C compiler: Open MPI (MPICH with WHIPPLE_MPI=mpich), parallel HDF5, libclang
 # (for the bindings) and, with --tests, Python's venv, OpenGL without a display and a headless Chromium. Silent
-# and quick when all of it is there.
+# and quick when all of it is there. MPICH comes beside Open MPI: where both are installed, mpicc and mpirun stay Debian's
+# choice, which is Open MPI.
 #
 #   jobs/install-deps.sh [--tests]
 #
@@ -47,9 +48,13 @@ have_chromium() {
 # What lacks, one line each.
 lacking() {
     command -v cc >/dev/null || echo "a C compiler (cc)"
-    { command -v mpicc && command -v mpirun; } >/dev/null || echo "Open MPI (mpicc, mpirun)"
+    if [ "${WHIPPLE_MPI:-}" = mpich ]; then
+        { command -v mpicc.mpich && command -v mpirun.mpich; } >/dev/null || echo "MPICH (mpicc.mpich, mpirun.mpich)"
+    else
+        { command -v mpicc && command -v mpirun; } >/dev/null || echo "Open MPI (mpicc, mpirun)"
+    fi
     command -v pkg-config >/dev/null || [ -n "${HDF5_DIR:-}" ] || echo "pkg-config"
-    whipple_find_hdf5 || echo "HDF5 built for MPI (pkg-config hdf5-openmpi, h5pcc or HDF5_DIR)"
+    whipple_find_hdf5 || echo "HDF5 built for MPI (pkg-config hdf5-${WHIPPLE_MPI:-openmpi}, h5pcc or HDF5_DIR)"
     have_libclang || echo "libclang (LIBCLANG_PATH may name its folder)"
     [ -z "$want_tests" ] || python3 -c 'import venv, ensurepip' 2>/dev/null ||
         echo "Python 3 with venv (for the tests)"
@@ -68,7 +73,12 @@ fi
 echo "whipple needs, and this machine lacks:"
 printf '  %s\n' "${missing[@]}"
 
-packages=(build-essential openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libclang-dev pkg-config)
+packages=(build-essential libclang-dev pkg-config)
+if [ "${WHIPPLE_MPI:-}" = mpich ]; then
+    packages+=(mpich libmpich-dev libhdf5-mpich-dev)
+else
+    packages+=(openmpi-bin libopenmpi-dev libhdf5-openmpi-dev)
+fi
 chromium=chromium-headless-shell
 if grep -qs '^ID=ubuntu' /etc/os-release; then chromium=chromium-browser; fi
 [ -z "$want_tests" ] || packages+=(python3-venv libegl1 libgl1-mesa-dri "$chromium")
@@ -95,7 +105,11 @@ fi
 apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
     apt-get -q -o Acquire::Retries=3 -o DPkg::Lock::Timeout=300)
 for attempt in 1 2 3; do
-    if "${apt[@]}" update && "${apt[@]}" "${install[@]}"; then break; fi
+    if "${apt[@]}" update && "${apt[@]}" "${install[@]}"; then
+        # What has come since.
+        source jobs/env.sh
+        break
+    fi
     if [ "$attempt" = 3 ]; then
         echo "apt failed three times; the command was: apt-get update && apt-get ${install[*]}" >&2
         exit 1

@@ -53,14 +53,14 @@ if [ "$1" = restart ]; then command=restart; shift; fi
 [ $# -gt 0 ] || usage
 
 # Pinned to its own cores where a scheduler gave them; unbound beside other work elsewhere.
-placement=()
+placement=() batch=''
 if [ -n "${SLURM_JOB_ID:-}${PBS_JOBID:-}" ]; then
     unset OMPI_MCA_hwloc_base_binding_policy OMPI_MCA_rmaps_base_oversubscribe \
         OMPI_MCA_mpi_yield_when_idle PRTE_MCA_hwloc_default_binding_policy \
         PRTE_MCA_rmaps_default_mapping_policy
     [ -n "$ranks" ] || ranks=${SLURM_NTASKS:-$(wc -l <"${PBS_NODEFILE:-/dev/null}")}
     threads=${threads:-${SLURM_CPUS_PER_TASK:-${OMP_NUM_THREADS:-1}}}
-    placement=(--map-by "slot:PE=$threads" --bind-to core)
+    batch=1
 fi
 [ "${ranks:-0}" != 0 ] || ranks=2
 if [ -z "$threads" ]; then
@@ -68,13 +68,19 @@ if [ -z "$threads" ]; then
     [ "$threads" -ge 1 ] || threads=1
 fi
 
-program=${WHIPPLE_PROGRAM:-$root/target/release/whipple}
+program=${WHIPPLE_PROGRAM:-${CARGO_TARGET_DIR:-$root/target}/release/whipple}
 # From a package these scripts stand beside no Makefile, and the program is on the path.
 if [ ! -x "$program" ] && [ ! -f "$root/Makefile" ]; then
     program=$(command -v whipple)
 fi
 if [ ! -x "$program" ]; then
     make -C "$root" release
+fi
+if [ -n "$batch" ]; then
+    case $("$program" --version 2>/dev/null || true) in
+        *MPICH*) placement=(-bind-to "core:$threads") ;;
+        *) placement=(--map-by "slot:PE=$threads" --bind-to core) ;;
+    esac
 fi
 
 # The folder of a new run's results, as the program chooses it.
