@@ -22,7 +22,8 @@ const BLOCKS: [u64; 2] = [1 << 20, 64 << 20];
 /// Blocks of a file, where these limits leave the choice: enough for many ranks to share.
 const COUNT: u64 = 256;
 /// Bytes of a leaf; the last one of a file may be shorter.
-pub(super) const LEAF: u64 = 16 << 10;
+pub(super) const LEAF: u64 = LEAF_BYTES as u64;
+const LEAF_BYTES: usize = 16 << 10;
 
 /// A digest, or a sum of some.
 type Words = [u64; 4];
@@ -125,7 +126,7 @@ fn digest_of(file: &File, range: Range<u64>, kind: Kind) -> io::Result<Words> {
         match kind {
             Kind::Whole => whole.update(bytes),
             Kind::Leaves => {
-                let leaves = (offset / LEAF..).zip(bytes.chunks(LEAF as usize));
+                let leaves = (offset / LEAF..).zip(bytes.chunks(LEAF_BYTES));
                 for (leaf, bytes) in leaves {
                     add(&mut sum, leaf_of(Sha256::new_with_prefix(bytes), leaf));
                 }
@@ -188,7 +189,7 @@ impl Leaves {
         if bytes.is_empty() {
             return;
         }
-        let (first, leaves) = (self.next / LEAF, bytes.par_chunks_exact(LEAF as usize));
+        let (first, leaves) = (self.next / LEAF, bytes.par_chunks_exact(LEAF_BYTES));
         let rest = leaves.remainder();
         let digests = leaves.enumerate().map(|(k, bytes)| {
             let leaf = first + k as u64;
@@ -225,7 +226,7 @@ impl Leaves {
             unknown.extend(next..size.div_ceil(LEAF));
         }
         let read = File::open(path).and_then(|file| {
-            let mut bytes = vec![0; LEAF as usize];
+            let mut bytes = vec![0; LEAF_BYTES];
             for &leaf in &unknown {
                 let start = leaf * LEAF;
                 let count = usize::try_from((size - start).min(LEAF)).unwrap_or(0);

@@ -126,6 +126,7 @@ pub fn in_words(bytes: f64) -> String {
 }
 
 /// Ranks on this machine, of so many, as Open MPI and MPICH tell.
+#[must_use]
 pub fn local_ranks(ranks: usize) -> usize {
     let names = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS"];
     let found = names
