@@ -97,7 +97,7 @@ fn what_cannot_be_read_now_or_is_of_another_version_ends_a_restart() {
         fs::write(path, whole).unwrap();
     }
 
-    fs::write(&manifest, text.replace("\"format\": 2", "\"format\": 9")).unwrap();
+    fs::write(&manifest, text.replace("\"format\": 3", "\"format\": 9")).unwrap();
     assert_refused(&run, &[], 2, &["has format 9"]);
     fs::write(
         &manifest,
