@@ -128,7 +128,9 @@ fn thin_matter_has_the_thermal_pressure_of_a_gas() {
             panic!("not a Mie–Grüneisen metal");
         };
         let rho0 = metal.reference_density;
-        let gamma = |ratio: f64| eos.response(rho0, ratio * rho0, 1e6).dp_de / (ratio * rho0);
+        // So hot that the cold part leaves a pressure at any density.
+        let hot = 1e11;
+        let gamma = |ratio: f64| eos.response(rho0, ratio * rho0, hot).dp_de / (ratio * rho0);
         assert!((gamma(1e-6) - 2.0 / 3.0).abs() < 1e-4);
         // Between, never below that of the gas, nor far above that of dense matter.
         for n in 1..100 {
@@ -136,7 +138,7 @@ fn thin_matter_has_the_thermal_pressure_of_a_gas() {
             assert!((0.66..1.5 * eos.gamma0).contains(&gamma), "{n} {gamma}");
             // The slope of the pressure is that of the pressure.
             let (rho, d) = (f64::from(n) / 100.0 * rho0, 1e-4 * rho0);
-            let at = |rho: f64| eos.response(rho0, rho, 3e6);
+            let at = |rho: f64| eos.response(rho0, rho, hot);
             let slope = (at(rho + d).pressure - at(rho - d).pressure) / (2.0 * d);
             // But for the corners.
             if ![75, 99].contains(&n) {
@@ -147,6 +149,12 @@ fn thin_matter_has_the_thermal_pressure_of_a_gas() {
         for ratio in [0.75, 0.9, 1.0] {
             let found = eos.response(rho0, ratio * rho0, 1e6).dp_de / rho0;
             assert!((found / (eos.gamma0 + (ratio - 1.0) * eos.b) - 1.0).abs() < 1e-14);
+        }
+        // Cold matter bears tension down to three quarters of its density, and none where it is thinner.
+        for e in [-1e9, 0.0, 1e6] {
+            let tension = |ratio: f64| eos.response(rho0, ratio * rho0, e).pressure;
+            assert!(tension(0.7501) < 0.0);
+            assert!((1..75).all(|n| tension(f64::from(n) / 100.0) >= 0.0), "{e}");
         }
     }
 }

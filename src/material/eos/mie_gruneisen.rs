@@ -20,6 +20,11 @@
 //! .1 to .38. So below, f is the cubic of the same value and slope there that ends in the thermal
 //! pressure of a monatomic gas, `Γ ρ e` with Γ = 2/3 (γ₀ if that is less), where matter is thin.
 //!
+//! Cold pressure linear in density would let matter without a limit of spall bear any tension. Solids without a flaw
+//! come apart at some fifth to tenth of their bulk modulus (Rose et al. 1984, Phys. Rev. B 29, 2963: a universal curve
+//! of energies of cohesion), so no pressure is below zero below [`DENSE`] of the reference density; its
+//! derivatives stay, for the sound speed of what has come apart.
+//!
 //! # Strong compression
 //!
 //! The fit has an end. N, the cold part, turns down beyond a `μ_N` where `dN/dμ = 0`, and D has a
@@ -149,8 +154,10 @@ impl MieGruneisen {
         let (f, df) = self.thin(mu);
         let dense = mu >= DENSE - 1.0;
         let dp_de = rho0 * if dense { linear } else { f };
+        let pressure = rho0 * c0_squared * cold + dp_de * e;
+        let most_tension = if dense { f64::NEG_INFINITY } else { 0.0 };
         PointResponse {
-            pressure: rho0 * c0_squared * cold + dp_de * e,
+            pressure: at_least(pressure, most_tension),
             dp_drho: c0_squared * dcold + if dense { self.b } else { df } * e,
             dp_de,
         }
