@@ -202,58 +202,52 @@ impl Case {
         first..first + self.loads.absorbers.len()
     }
 
+    /// `true` if this holds of the material of a body.
+    pub fn any_material(&self, is: impl Fn(&Material) -> bool) -> bool {
+        let mut bodies = self.bodies.iter();
+        bodies.any(|body| is(&self.materials[body.material]))
+    }
+
     /// `true` if a material of the case may fail for good.
     #[must_use]
     pub fn may_fail(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].failure.has_memory())
+        self.any_material(|material| material.failure.has_memory())
     }
 
     /// `true` if a material of the case has pores.
     #[must_use]
     pub fn is_porous(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].porosity.is_some())
+        self.any_material(|material| material.porosity.is_some())
     }
 
     /// `true` if a material of the case is an explosive.
     #[must_use]
     pub fn is_explosive(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].burns())
+        self.any_material(|material| material.burns())
     }
 
     /// `true` if a material of the case has directions of its own.
     #[must_use]
     pub fn has_directions(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].has_directions())
+        self.any_material(|material| material.has_directions())
     }
 
     /// `true` if failure of a material of the case changes this field.
     #[must_use]
     pub fn fails_with(&self, field: &str) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| {
-            self.materials[body.material]
-                .failure
-                .state()
-                .any(|name| name == field)
-        })
+        self.any_material(|material| material.failure.state().any(|name| name == field))
     }
 
     /// `true` if a material of the case may yield.
     #[must_use]
     pub fn may_yield(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].strength.yields())
+        self.any_material(|material| material.strength.yields())
     }
 
     /// `true` if a material of a body tells its temperature.
     #[must_use]
     pub fn has_temperature(&self) -> bool {
-        let mut bodies = self.bodies.iter();
-        bodies.any(|body| self.materials[body.material].thermal.is_some())
+        self.any_material(|material| material.thermal.is_some())
     }
 
     /// The largest sound speed (m/s) of what forces move; what is driven has a material that carries nothing.

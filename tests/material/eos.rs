@@ -159,6 +159,25 @@ fn thin_matter_has_the_thermal_pressure_of_a_gas() {
     }
 }
 
+/// Cold matter that has expanded pulls or bears nothing; it pushes nowhere, whatever the constants of its compression.
+#[test]
+fn cold_matter_that_has_expanded_does_not_push() {
+    for name in library::names() {
+        let material = library::find(name).unwrap();
+        let (Eos::MieGruneisen(_) | Eos::Tillotson(_)) = material.eos else {
+            continue;
+        };
+        let solid = (material.porosity.as_ref())
+            .map_or(material.reference_density, |pores| pores.solid.density);
+        for n in 1..100 {
+            let p = (material.eos)
+                .at(solid, f64::from(n) / 100.0 * solid, 0.0)
+                .pressure;
+            assert!(p <= 0.0, "{name} at {n} %: {p}");
+        }
+    }
+}
+
 #[test]
 fn strong_compression_gives_finite_growing_pressure() {
     // Beyond the Hugoniot's pole (μ = 2.96 for 2024) and the maximum of the cold part (1.18).

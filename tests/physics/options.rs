@@ -324,3 +324,18 @@ fn all_options_together_conserve_energy_and_momentum() {
         assert!(worst.momentum_error.iter().all(|&e| e < 2e-15));
     }
 }
+
+/// A material that no body has changes no bit, whatever fields its laws would ask for.
+#[test]
+fn a_material_of_no_body_changes_nothing() {
+    let ball = "dimension = 2\nspacing = \"0.5 mm\"\n[run]\nend_time = \"1 us\"\n\
+        [material.lead]\nlibrary = \"lead\"\n[[body]]\nname = \"disc\"\nmaterial = \"lead\"\n\
+        shape.sphere.radius = \"3 mm\"\nvelocity = [\"100 m/s * y / (3 mm)\", 0]\n";
+    let other = "[material.other]\nlibrary = \"steel-weldox-460e-ductile\"\n";
+    let [alone, beside] = [ball.to_owned(), format!("{ball}{other}")].map(|text| {
+        let mut s = crate::physics_support::start(crate::physics_support::inline(&text));
+        advance(&mut s, 5);
+        s.particles.velocity
+    });
+    assert_eq!(alone, beside);
+}

@@ -80,7 +80,7 @@ impl Sums {
                     material.map_or(0.0, Material::longitudinal_speed)
                 })
                 .collect(),
-            needs_particle: case.materials.iter().any(Material::needs_particle),
+            needs_particle: case.any_material(Material::needs_particle),
             from_mirrors: Vec::new(),
             uncorrected: 0,
         }

@@ -10,7 +10,7 @@ use particles::{FieldInfo, HaloPhase, Owner, ParticleStore, Select, rows};
 pub(super) fn unused_fields(case: &Case, contact: &ContactTable) -> Owner {
     let sph = &case.sph;
     let driven = !case.loads.velocities.is_empty() || case.bodies.iter().any(|b| b.rigid.is_some());
-    let localises = case.materials.iter().any(|m| m.failure.localises());
+    let localises = case.any_material(|material| material.failure.localises());
     let used = [
         (Owner::LOADS, driven),
         (Owner::FREE_RIGID, case.bodies.iter().any(Body::is_free)),

@@ -4,7 +4,7 @@
 //! too cold to vaporise (`e ≤ e_iv`)
 //!
 //! ```text
-//! p_c = (a + b/w) ρ e + A μ + B μ²
+//! p_c = (a + b/w) ρ e + A μ + B max(μ, 0)²
 //! ```
 //!
 //! where it is expanded and vaporised (`μ < 0`, `e ≥ e_cv`), with `z = 1/η − 1`,
@@ -17,6 +17,9 @@
 //! branches meet in value, and at `μ = 0` in slope. Source: Tillotson (1962), *Metallic equations
 //! of state for hypervelocity impact*, GA-3216; in this form Melosh (1989), *Impact cratering*,
 //! appendix II, and Benz & Asphaug (1999), Icarus 142, 5.
+//!
+//! B belongs to compression alone (as in Brundage 2013, Procedia Eng. 58, 461): where it is above A, as of limestone and
+//! water, its square would push matter apart again that has expanded.
 //!
 //! Towards `e = −E₀ η²`, far below anything the fit knows, w would vanish: it stays at or above ½.
 //! The expanded cold branch would bear any tension: a spall cut-off ends it, or a least density, below which no
@@ -137,7 +140,8 @@ impl Tillotson {
     }
 
     fn condensed(&self, at: &Shared) -> PointResponse {
-        let (a, b) = (self.bulk_modulus, self.quadratic_modulus);
+        let a = self.bulk_modulus;
+        let b = if at.mu > 0.0 { self.quadratic_modulus } else { 0.0 };
         let response = PointResponse {
             pressure: self.a * at.rho * at.e + at.hot.pressure + at.mu * (a + b * at.mu),
             dp_drho: self.a * at.e + at.hot.dp_drho + (a + 2.0 * b * at.mu) / at.rho0,
