@@ -463,3 +463,41 @@ fn joints_that_the_spacing_does_not_fit_are_told() {
         &[],
     );
 }
+
+/// A sphere, a bumper and a wall: fragments that are few particles wide, and one that planes of symmetry split.
+#[test]
+fn spheres_too_coarse_for_their_fragments_are_told() {
+    let told = |set: &[&str]| {
+        let text = "dimension = 3\nspacing = \"0.15 mm\"\nrun.end_time = \"30 us\"\n\
+            material.2024.library = \"aluminium-2024-ductile\"\n\
+            [[body]]\nname = \"bumper\"\nmaterial = \"2024\"\n\
+            shape.cylinder = { axis = \"z\", radius = \"9 mm\", length = \"0.787 mm\" }\n\
+            [[body]]\nname = \"wall\"\nmaterial = \"2024\"\n\
+            shape.cylinder = { axis = \"z\", radius = \"9 mm\", length = \"2 mm\", centre = [0, 0, \"-52 mm\"] }\n\
+            [[body]]\nname = \"sphere\"\nmaterial = \"2024\"\n\
+            shape.sphere = { centre = [0, 0, \"3 mm\"], diameter = \"3.175 mm\" }\nspeed = \"4.4 km/s\"\n\
+            touch = { body = \"bumper\", direction = \"-z\" }\n";
+        let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+        let case = parse("shield", text, &set).unwrap_or_else(|error| panic!("{error}"));
+        let mut said = advice(&case, &approaches(&case));
+        said.retain(|line| line.starts_with("`sphere`"));
+        said
+    };
+    let said = told(&[]);
+    assert_eq!(said.len(), 1, "{said:?}");
+    let fragments = "`sphere` breaks in `bumper` into fragments of some 825 um, 5.5 particles across; fewer than 8 are dust";
+    assert!(said[0].starts_with(fragments), "{said:?}");
+    assert!(said[0].contains("a verdict takes a spacing of"));
+    let quarter = "symmetry=[{ axis = \"x\" }, { axis = \"y\" }]";
+    let fine = "spacing=0.1mm";
+    assert!(told(&[fine]).is_empty());
+    assert!(told(&[fine, quarter]).is_empty());
+    // At 3 km/s a fragment stays on the axis.
+    let slow = told(&[fine, quarter, "body.sphere.speed=3km/s"]);
+    assert_eq!(slow.len(), 1, "{slow:?}");
+    assert!(slow[0].contains("planes of symmetry split the one on the axis"));
+    assert!(told(&[fine, "body.sphere.speed=3km/s"]).is_empty());
+    // At 7 km/s drops are left, and without an energy of cracks nothing tells their size.
+    assert!(told(&["body.sphere.speed=7km/s"]).is_empty());
+    assert!(told(&["material.2024.failure.fracture_energy=0 J/m^2"]).is_empty());
+}

@@ -3,6 +3,7 @@
 mod approach;
 mod case;
 mod costs;
+mod fragments;
 mod impact;
 mod initial;
 mod joints;
@@ -82,6 +83,7 @@ pub fn warnings(case: &Case, approaches: &[Approach]) -> Vec<String> {
 pub fn advice(case: &Case, approaches: &[Approach]) -> Vec<String> {
     let mut messages = Vec::new();
     case::thin_sections(case, approaches, &mut messages);
+    fragments::coarse(case, approaches, &mut messages);
     messages
 }
 
