@@ -22,8 +22,8 @@
 //!
 //! Cold pressure linear in density would let matter without a limit of spall bear any tension. Solids without a flaw
 //! come apart at some fifth to tenth of their bulk modulus (Rose et al. 1984, Phys. Rev. B 29, 2963: a universal curve
-//! of energies of cohesion), so no pressure is below zero below [`DENSE`] of the reference density; its
-//! derivatives stay, for the sound speed of what has come apart.
+//! of energies of cohesion), so matter bears none below [`DENSE`] of the reference density. Its derivatives stay, for the
+//! sound speed of what has come apart.
 //!
 //! # Strong compression
 //!
@@ -74,6 +74,10 @@ struct Bounds {
 impl EquationOfState for MieGruneisen {
     fn bulk_modulus(&self, rho0: f64) -> f64 {
         rho0 * self.c0 * self.c0
+    }
+
+    fn least_density_of_tension(&self) -> f64 {
+        DENSE
     }
 
     #[inline(always)]
@@ -154,10 +158,8 @@ impl MieGruneisen {
         let (f, df) = self.thin(mu);
         let dense = mu >= DENSE - 1.0;
         let dp_de = rho0 * if dense { linear } else { f };
-        let pressure = rho0 * c0_squared * cold + dp_de * e;
-        let most_tension = if dense { f64::NEG_INFINITY } else { 0.0 };
         PointResponse {
-            pressure: at_least(pressure, most_tension),
+            pressure: rho0 * c0_squared * cold + dp_de * e,
             dp_drho: c0_squared * dcold + if dense { self.b } else { df } * e,
             dp_de,
         }
