@@ -272,19 +272,6 @@ impl Comm {
         }
     }
 
-    /// Sends `sends[r]` to rank r, receives what rank r sent here in `receives[r]`.
-    #[track_caller]
-    pub fn all_to_all_u64(&self, sends: &[u64], receives: &mut Vec<u64>) {
-        receives.resize(self.size(), 0);
-        match &self.transport {
-            Transport::Solo => receives.copy_from_slice(sends),
-            Transport::Mpi(world) => {
-                waiting(|| world.all_to_all_into(sends, receives.as_mut_slice()));
-            }
-            Transport::Virtual(rank) => rank.all_to_all(sends, receives),
-        }
-    }
-
     /// Gives every rank the root's bytes.
     #[track_caller]
     pub fn broadcast(&self, bytes: &mut Vec<u8>) {

@@ -44,18 +44,21 @@ impl<T: PlainRecord> Record for T {
 /// The ranks that receive records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Receivers {
-    /// All, or all but some √P, each its share of the keys.
+    /// All, each its share of the keys.
     Owners,
     /// The same, with one owner for all keys of an upper half.
     OwnersByUpperHalf,
+    /// The rank that the upper half of a key names.
+    Named,
     /// Rank 0.
     Root,
 }
 
-/// Ranks in rows as even as whole numbers allow. All rows have the first `width` columns; ranks of the column
-/// after them, which some rows have, receive no records.
+/// Ranks in rows as even as whole numbers allow. All rows have the first `width` columns. Some have one rank more: that
+/// of a row stands at the end of the column with the number of the row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Rows {
+    ranks: usize,
     count: usize,
     width: usize,
     /// The first rows, so many, have one rank more.
@@ -66,19 +69,20 @@ impl Rows {
     fn of(ranks: usize) -> Self {
         let count = ranks.isqrt();
         Self {
+            ranks,
             count,
             width: ranks / count,
             longer: ranks % count,
         }
     }
 
-    /// The rank at a row and a column.
-    fn rank(self, [row, column]: [usize; 2]) -> usize {
-        row * self.width + row.min(self.longer) + column
+    /// The rank at a row and a place in it.
+    fn rank(self, [row, place]: [usize; 2]) -> usize {
+        row * self.width + row.min(self.longer) + place
     }
 
-    /// Row and column of a rank.
-    fn place(self, rank: usize) -> [usize; 2] {
+    /// Row of a rank and its place in it.
+    fn in_row(self, rank: usize) -> [usize; 2] {
         let begun = self.longer * (self.width + 1);
         if rank < begun {
             return [rank / (self.width + 1), rank % (self.width + 1)];
@@ -87,24 +91,42 @@ impl Rows {
         [self.longer + rest / self.width, rest % self.width]
     }
 
-    /// The columns of a row.
-    fn columns(self, row: usize) -> usize {
-        self.width + usize::from(row < self.longer)
+    /// Column of a rank and its place in it.
+    fn in_column(self, rank: usize) -> [usize; 2] {
+        match self.in_row(rank) {
+            [row, place] if place < self.width => [place, row],
+            [row, _] => [row, self.count],
+        }
     }
 
-    /// Row and column to which records of a key go.
+    /// The ranks of a row.
+    fn row(self, row: usize) -> impl Iterator<Item = usize> {
+        let first = self.rank([row, 0]);
+        first..first + self.width + usize::from(row < self.longer)
+    }
+
+    /// The ranks of a column.
+    fn column(self, column: usize) -> impl Iterator<Item = usize> {
+        let rows = (0..self.count).map(move |row| self.rank([row, column]));
+        let last = (column < self.longer).then(|| self.rank([column, self.width]));
+        rows.chain(last)
+    }
+
+    /// Column, and place in it, of the rank to which records of a key go.
     fn receiver(self, receivers: Receivers, key: u64) -> [usize; 2] {
         let key = match receivers {
             Receivers::Owners => key,
             Receivers::OwnersByUpperHalf => key >> 32,
+            Receivers::Named => {
+                return self.in_column(usize::try_from(key >> 32).expect("a rank"));
+            }
             Receivers::Root => return [0, 0],
         };
         // By the upper bits of a product with 2⁶⁴ over the golden ratio, which spreads keys that follow each other
         // (Knuth, The Art of Computer Programming 3, 6.4).
         let hash = key.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
-        let share = (hash * (self.count * self.width) as u64) >> 32;
-        let share = usize::try_from(share).unwrap_or(0);
-        [share / self.width, share % self.width]
+        let owner = (hash * self.ranks as u64) >> 32;
+        self.in_column(usize::try_from(owner).unwrap_or(0))
     }
 }
 
@@ -249,20 +271,26 @@ impl<T: Record> Relay<T> {
         records: &mut Vec<T>,
         join: impl Fn(&mut T, &T),
     ) -> &mut Vec<T> {
-        let (rows, receivers) = (Rows::of(comm.size()), self.receivers);
-        let [row, column] = rows.place(comm.rank());
+        let (rows, receivers, rank) = (Rows::of(comm.size()), self.receivers, comm.rank());
         let [across, along] = &mut self.ways;
         std::mem::swap(&mut across.gone, records);
-        across.mine = column;
-        let all = (0..rows.columns(row)).map(|column| rows.rank([row, column]));
-        let to = |key| rows.receiver(receivers, key)[1];
-        across.go(comm, all, to, &join);
+        let row;
+        [row, across.mine] = rows.in_row(rank);
+        across.go(
+            comm,
+            rows.row(row),
+            |key| rows.receiver(receivers, key)[0],
+            &join,
+        );
         std::mem::swap(&mut along.gone, &mut across.come);
-        along.mine = row;
-        let all = (0..rows.count).map(|row| rows.rank([row, column]));
-        let all = all.filter(|_| column < rows.width);
-        let to = |key| rows.receiver(receivers, key)[0];
-        along.go(comm, all, to, &join);
+        let column;
+        [column, along.mine] = rows.in_column(rank);
+        along.go(
+            comm,
+            rows.column(column),
+            |key| rows.receiver(receivers, key)[1],
+            &join,
+        );
         &mut along.come
     }
 
@@ -275,9 +303,9 @@ impl<T: Record> Relay<T> {
     {
         let (rows, receivers) = (Rows::of(comm.size()), self.receivers);
         let [across, along] = &mut self.ways;
-        along.come_back(comm, |key| rows.receiver(receivers, key)[0]);
+        along.come_back(comm, |key| rows.receiver(receivers, key)[1]);
         std::mem::swap(&mut along.gone, &mut across.come);
-        across.come_back(comm, |key| rows.receiver(receivers, key)[1]);
+        across.come_back(comm, |key| rows.receiver(receivers, key)[0]);
         std::mem::swap(&mut across.gone, records);
     }
 
@@ -315,22 +343,46 @@ mod tests {
         for ranks in (1..200).chain([1000, 9973, 10_000]) {
             let rows = Rows::of(ranks);
             for rank in 0..ranks {
-                let [row, column] = rows.place(rank);
-                assert!(row < rows.count && column < rows.columns(row));
-                assert_eq!(rows.rank([row, column]), rank);
+                let [row, place] = rows.in_row(rank);
+                assert_eq!(rows.row(row).nth(place), Some(rank));
+                let [column, place] = rows.in_column(rank);
+                // Each row has a rank in it, so that whoever sends finds one.
+                assert!(column < rows.width && place <= rows.count);
+                assert_eq!(rows.column(column).nth(place), Some(rank));
             }
             assert!(rows.count + rows.width <= 2 * ranks.isqrt() + 2);
-            let receivers = rows.count * rows.width;
-            assert!(receivers + rows.count > ranks);
-            let mut counts = vec![0; receivers];
-            for key in 0..100 * receivers as u64 {
-                let [row, column] = rows.receiver(Receivers::Owners, key);
-                counts[row * rows.width + column] += 1;
+            let mut counts = vec![0; ranks];
+            for key in 0..100 * ranks as u64 {
+                let [column, place] = rows.receiver(Receivers::Owners, key);
+                counts[rows.column(column).nth(place).unwrap()] += 1;
             }
             assert!(
                 counts.iter().all(|count| (90..=110).contains(count)),
                 "{ranks}"
             );
+        }
+    }
+
+    /// Each rank writes to some, at times to itself, in two rounds.
+    #[test]
+    fn records_come_to_whom_they_name() {
+        for ranks in [1, 2, 3, 5, 7, 12, 30] {
+            virtual_ranks(ranks, Machine::IDEAL, |comm| {
+                let (me, ranks) = (comm.rank() as u64, ranks as u64);
+                let writes = |from: u64, to: u64| (from * to + to) % 3 == 0;
+                let mut relay = Relay::new(Receivers::Named);
+                for round in 1..3 {
+                    let to = (0..ranks).filter(|&to| writes(me, to));
+                    let record = |from: u64, to: u64| Count {
+                        key: to << 32 | from,
+                        count: from * round,
+                    };
+                    let mut records: Vec<Count> = to.map(|to| record(me, to)).collect();
+                    let come = relay.send(comm, &mut records, |_, _| unreachable!());
+                    let wanted = (0..ranks).filter(|&from| writes(from, me));
+                    assert!(wanted.map(|from| record(from, me)).eq(come.iter().copied()));
+                }
+            });
         }
     }
 

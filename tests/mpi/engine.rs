@@ -521,9 +521,6 @@ const CALLS: &[Call] = &[
     ("any", |comm| assert!(!comm.any(false))),
     ("join", |comm| comm.join(&mut Joint::default())),
     ("gather", |comm| comm.all_gather_u64(&[1], &mut Vec::new())),
-    ("all to all", |comm| {
-        comm.all_to_all_u64(&vec![1; comm.size()], &mut Vec::new());
-    }),
     ("broadcast", |comm| {
         comm.broadcast_from(comm.size() - 1, &mut vec![1]);
     }),

@@ -143,20 +143,6 @@ impl Rank {
         joined.copy_from_slice(&all);
     }
 
-    /// Gives each rank its word of this rank's, and this rank those of all.
-    #[track_caller]
-    pub fn all_to_all(&self, sends: &[u64], receives: &mut [u64]) {
-        let size = self.size();
-        let cost = self.tree(1.0, 0.5 * size_of_val(sends) as f64);
-        let all = self.meet(cost, [size_of_val(sends); 2], |all| {
-            all.resize(size * size, 0);
-            all[self.number * size..][..size].copy_from_slice(sends);
-        });
-        for (from, word) in receives.iter_mut().enumerate() {
-            *word = all[from * size + self.number];
-        }
-    }
-
     /// Sends all ranks the bytes of one, after their number.
     #[track_caller]
     pub fn broadcast(&self, from: usize, bytes: &mut Vec<u8>) {

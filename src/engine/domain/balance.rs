@@ -54,8 +54,9 @@ struct Span {
     width: f64,
     /// Number of coarse planes.
     coarse: usize,
-    /// The first of its coarse planes, and the first of its faces, of those of all slabs.
-    first: usize,
+    /// The first of its coarse planes and the one after its last, of those of all slabs in which this rank has particles.
+    planes: [usize; 2],
+    /// The first of its faces, of those of all slabs.
     first_face: usize,
 }
 
@@ -234,7 +235,6 @@ impl Balance {
         for slab in &self.slabs {
             next.coarse = COARSE * slab.cut().parts();
             self.spans.push(next);
-            next.first += next.coarse;
             next.first_face += slab.cut().parts() - 1;
         }
         self.faces.clear();
@@ -255,11 +255,15 @@ impl Balance {
             }
             tell_ends(ends, run);
         });
-        let tallies = &mut self.tallies;
+        let (tallies, mut end) = (&mut self.tallies, 0);
         tallies.clear();
-        for (place, ends) in self.ends.here().chunks_exact(2).enumerate() {
+        let all = self.ends.here().chunks_exact(2).zip(&mut self.spans);
+        for (place, (ends, span)) in all.enumerate() {
+            span.planes = [end; 2];
             if ends[0] != u64::MAX {
                 tallies.extend([0, 1].map(|k| Tally::new(place, k as u64, ends[k])));
+                end += span.coarse;
+                span.planes[1] = end;
             }
         }
         let join = |all: &mut Tally, one: &Tally| all.value = all.value.min(one.value);
@@ -278,8 +282,10 @@ impl Balance {
         share: Option<u64>,
     ) {
         let spans = &self.spans;
-        let count = spans.last().map_or(0, |span| span.first + span.coarse);
-        let counts = empty(&mut self.counts, count);
+        let counts = empty(
+            &mut self.counts,
+            spans.last().map_or(0, |span| span.planes[1]),
+        );
         let tasks = self.places.par_chunks_mut(SHARE);
         let tasks = tasks.zip(positions.par_chunks(SHARE)).enumerate();
         // same bits in any order: whole numbers
@@ -290,7 +296,7 @@ impl Balance {
                     let x = position[axis];
                     // Many of a lattice lie in a row.
                     if (*place, x) != (last.0, last.1) {
-                        last = (*place, x, span.first + span.plane(x) / FINE);
+                        last = (*place, x, span.planes[0] + span.plane(x) / FINE);
                     }
                     *place = u32::try_from(last.2).unwrap_or(OWNED);
                     run.add(last.2, work(task * SHARE + k));
@@ -301,8 +307,8 @@ impl Balance {
         let tallies = &mut self.tallies;
         tallies.clear();
         for (place, span) in spans.iter().enumerate() {
-            let counts = &mut self.counts[span.first..span.first + span.coarse];
-            tell_counts(tallies, (place, 0), counts);
+            let [first, end] = span.planes;
+            tell_counts(tallies, (place, 0), &mut self.counts[first..end]);
         }
         let rank = comm.rank();
         let mine = self
@@ -347,13 +353,13 @@ impl Balance {
         work: impl Fn(usize) -> u32 + Sync,
     ) {
         let (spans, places, marked) = (&self.spans, &self.places, &self.marked);
-        let coarse = spans.last().map_or(0, |span| span.first + span.coarse);
+        let coarse = spans.last().map_or(0, |span| span.planes[1]);
         self.numbers.clear();
         self.numbers.resize(coarse, UNMARKED);
         for (number, &key) in (0..).zip(marked) {
             let coarse = Tally { key, value: 0 };
             let plane = usize::try_from(coarse.what()).unwrap_or(0);
-            self.numbers[spans[coarse.place()].first + plane] = number;
+            self.numbers[spans[coarse.place()].planes[0] + plane] = number;
         }
         let numbers = &self.numbers;
         let counts = empty(&mut self.counts, FINE * marked.len());
@@ -434,17 +440,11 @@ impl Balance {
         }
         self.slabs.drain(..before);
         let (cuts, parts, faces) = (&self.cuts, &self.parts, slabs.faces());
-        let here = self.ends.here();
         self.lots.clear();
         self.divided.clear();
         for (place, (&(cut, first), span)) in (0..).zip(cuts.iter().zip(&self.spans)) {
-            if here[2 * place as usize] == u64::MAX {
-                // No particle of this rank is there.
-                self.lots.resize(span.first + span.coarse, OWNED);
-                continue;
-            }
             let mut ends = [0, 0];
-            for plane in 0..span.coarse {
+            for plane in 0..span.planes[1] - span.planes[0] {
                 // Rounding takes no particle beyond the fine planes beside its own.
                 let lower = span.edge(plane as f64 * FINE as f64 - 1.0);
                 let upper = span.edge((plane + 1) as f64 * FINE as f64 + 1.0);

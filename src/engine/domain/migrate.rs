@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::nested::Decomposition;
-use comm::{Comm, Exchange, Traffic};
+use comm::{Comm, Exchange, PlainRecord, Receivers, Relay, Traffic};
 use numerics::alone;
 use particles::{FieldInfo, ParticleStore};
 
@@ -26,8 +26,40 @@ pub struct Migration {
     found: Vec<Vec<[u32; 2]>>,
     gone: Vec<u32>,
     moves: Vec<(u32, u32)>,
-    counts: Vec<u64>,
-    arrivals: Vec<u64>,
+    /// What is told of those that leave and of those that arrive, these by ascending senders.
+    counts: Vec<Count>,
+    arrivals: Vec<Count>,
+    relay: Relay<Count>,
+    peers: Vec<usize>,
+}
+
+/// Particles that a rank sends to another.
+#[derive(Debug, Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Count {
+    /// The receiver in the upper half, the sender in the lower one.
+    key: u64,
+    particles: u64,
+}
+
+impl PlainRecord for Count {
+    fn key(&self) -> u64 {
+        self.key
+    }
+}
+
+impl Count {
+    fn new([from, to]: [usize; 2], particles: usize) -> Self {
+        Self {
+            key: (to as u64) << 32 | from as u64,
+            particles: particles as u64,
+        }
+    }
+
+    /// The sender.
+    fn sender(&self) -> usize {
+        usize::try_from(self.key & u64::from(u32::MAX)).unwrap_or(0)
+    }
 }
 
 impl Default for Migration {
@@ -49,6 +81,8 @@ impl Migration {
             moves: Vec::new(),
             counts: Vec::new(),
             arrivals: Vec::new(),
+            relay: Relay::new(Receivers::Named),
+            peers: Vec::new(),
         }
     }
 
@@ -137,18 +171,25 @@ impl Migration {
         farthest
     }
 
-    /// Tells all ranks how many particles they get, and makes peers of those that get any or send
+    /// Tells ranks how many particles they get, and makes peers of those that get any or send
     /// some. Collective.
     fn tell_counts(&mut self, comm: &Comm) {
         let (rank, size) = (comm.rank(), comm.size());
         self.counts.clear();
-        self.counts.resize(size, 0);
-        for [ahead, _] in &self.leaving {
-            self.counts[rank_ahead(rank, *ahead, size)] += 1;
+        self.peers.clear();
+        for part in self.leaving.chunk_by(|a, b| a[0] == b[0]) {
+            let to = rank_ahead(rank, part[0][0], size);
+            self.counts.push(Count::new([rank, to], part.len()));
+            self.peers.push(to);
         }
-        comm.all_to_all_u64(&self.counts, &mut self.arrivals);
-        let peers = (0..size).filter(|&r| self.counts[r] > 0 || self.arrivals[r] > 0);
-        self.exchange.set_peers(peers);
+        let never = |_: &mut Count, _: &Count| unreachable!("each pair of ranks has a key");
+        let arrivals = self.relay.send(comm, &mut self.counts, never);
+        self.arrivals.clear();
+        self.arrivals.extend_from_slice(arrivals);
+        self.peers.extend(self.arrivals.iter().map(Count::sender));
+        self.peers.sort_unstable();
+        self.peers.dedup();
+        self.exchange.set_peers(self.peers.iter().copied());
     }
 
     /// Sends those that leave to the peers, of whom one knows how many they send or hears it.
@@ -168,8 +209,10 @@ impl Migration {
                 self.exchange.outgoing(k),
             );
             if is_known {
-                let count = usize::try_from(self.arrivals[peer]).expect("a count fits memory");
-                self.exchange.expect(k, count * size);
+                let found = self.arrivals.binary_search_by_key(&peer, Count::sender);
+                let particles = found.map_or(0, |at| self.arrivals[at].particles);
+                let particles = usize::try_from(particles).expect("a count fits memory");
+                self.exchange.expect(k, particles * size);
             }
         }
         if !is_known {
@@ -199,12 +242,14 @@ impl Migration {
     /// Bytes allocated.
     #[must_use]
     pub fn memory(&self) -> usize {
-        let words = [&self.counts, &self.arrivals].map(Vec::capacity);
+        let counts = self.counts.capacity() + self.arrivals.capacity();
         self.exchange.memory()
+            + self.relay.memory()
             + 4 * self.gone.capacity()
             + 8 * (self.leaving.capacity() + self.moves.capacity())
             + 8 * self.found.iter().map(Vec::capacity).sum::<usize>()
-            + 8 * words.iter().sum::<usize>()
+            + 8 * self.peers.capacity()
+            + size_of::<Count>() * counts
     }
 }
 
