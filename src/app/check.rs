@@ -282,8 +282,9 @@ fn meetings<'a>(
 
 /// An ordinary machine, which is spared what rests and takes longer for what is unequal.
 fn machine(case: &Case, approaches: &[Approach]) -> Machine {
-    let work = plan::share_of_work(case, approaches) * plan::work_of_unequal(case);
-    Machine::default().at_work(work)
+    Machine::default()
+        .at_work(plan::work_of_unequal(case))
+        .at_rest(plan::share_of_work(case, approaches))
 }
 
 /// Seconds of so many steps with their files on a machine.

@@ -6,6 +6,7 @@ mod job;
 mod nodes;
 mod source;
 mod table;
+mod terms;
 mod words;
 
 use std::path::{Path, PathBuf};
@@ -85,7 +86,7 @@ pub struct PlanArgs {
     /// Numbers of nodes, as in 1,2,4: compare ranks and threads that fill their cores, and star the fastest
     #[arg(short = 'N', long, value_name = "N", value_delimiter = ',')]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    #[arg(conflicts_with_all = ["ranks", "levels", "doubled", "chart", "calibrate"])]
+    #[arg(conflicts_with_all = ["ranks", "levels", "doubled", "terms", "chart", "calibrate"])]
     nodes: Vec<u32>,
 
     /// Write a batch script for SLURM and PBS: a chain of jobs on the fastest layout of --nodes
@@ -103,6 +104,10 @@ pub struct PlanArgs {
     /// Tell the efficiency with each number of the machine doubled in turn, for the most ranks
     #[arg(long)]
     doubled: bool,
+
+    /// Tell what a step consists of, for the most ranks, in this model and in weak scaling
+    #[arg(long)]
+    terms: bool,
 
     /// Particles of each core in weak scaling: the same model, refined, which the chart shows too
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..))]
@@ -173,6 +178,14 @@ struct Planned {
     weak: Weak,
 }
 
+/// The most ranks, in the levels that are fastest.
+fn most(all: &[Planned]) -> Option<&Planned> {
+    all.iter().max_by(|a, b| {
+        let by_ranks = a.row.ranks.cmp(&b.row.ranks);
+        by_ranks.then(a.row.efficiency.total_cmp(&b.row.efficiency))
+    })
+}
+
 fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(path) = &args.chart {
         check_picture(path).map_err(with_prefix)?;
@@ -192,7 +205,7 @@ fn plan(args: &PlanArgs, path: &Path) -> Result<(), String> {
     if let Some(line) = words::unequal(unequal) {
         say(&line);
     }
-    let machine = machine.at_work(share * unequal);
+    let machine = machine.at_work(unequal).at_rest(share);
     if !args.nodes.is_empty() {
         return nodes::plan(args, path, &source, &machine);
     }
@@ -243,6 +256,9 @@ fn print_ranks(
     }
     say("");
     let files = print_files(source, machine)?;
+    if args.terms {
+        terms::print(args, &all);
+    }
     if args.doubled {
         doubled::print(args, machine, &alone, &all);
     }

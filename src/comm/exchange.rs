@@ -116,7 +116,7 @@ impl Peer {
 /// perhaps nothing. Buffers are kept from step to step.
 ///
 /// Either [`Exchange::post`] when both sides know the sizes ([`Exchange::expect`]), or
-/// [`Exchange::post_sizes`] first; then [`Exchange::wait`], which waits for incoming messages only: a
+/// [`Exchange::post_with_sizes`]; then [`Exchange::wait`], which waits for incoming messages only: a
 /// peer that is still computing delays no rank that needs nothing from it.
 #[derive(Default)]
 pub struct Exchange {
@@ -195,23 +195,33 @@ impl Exchange {
         self.peers[k].receive.resize(bytes, 0);
     }
 
-    /// Exchanges the sizes of messages with all peers.
+    /// Starts all messages, each after its size; returns when the sizes of the others' have come.
     ///
     /// # Panics
     /// If a message is larger than memory can be.
     #[track_caller]
-    pub fn post_sizes(&mut self, comm: &Comm) {
+    pub fn post_with_sizes(&mut self, comm: &Comm) {
+        wait_all(&mut self.sends);
         self.sizes.clear();
         let sends = self.peers[..self.count].iter().map(|peer| &peer.send);
         self.sizes.extend(sends.map(|send| [send.len() as u64, 0]));
         match &comm.transport {
             Transport::Solo => {}
-            Transport::Mpi(world) => self.swap_sizes_by_mpi(world.as_raw()),
-            Transport::Virtual(rank) => self.swap_sizes_virtually(rank),
-        }
-        for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
-            let bytes = usize::try_from(size[1]).expect("a size fits memory");
-            peer.receive.resize(bytes, 0);
+            Transport::Mpi(world) => {
+                let raw = world.as_raw();
+                self.swap_sizes_by_mpi(raw);
+                self.send_by_mpi(raw);
+                wait_all(&mut self.receives);
+                self.expect_sizes();
+                self.receive_by_mpi(raw);
+            }
+            Transport::Virtual(rank) => {
+                self.send_sizes_virtually(rank);
+                self.send_virtually(rank);
+                self.receive_sizes_virtually(rank);
+                self.expect_sizes();
+                self.expect_virtually(rank);
+            }
         }
     }
 
@@ -220,8 +230,14 @@ impl Exchange {
     pub fn post(&mut self, comm: &Comm) {
         match &comm.transport {
             Transport::Solo => {}
-            Transport::Mpi(world) => self.post_by_mpi(world.as_raw()),
-            Transport::Virtual(rank) => self.post_virtually(rank),
+            Transport::Mpi(world) => {
+                self.receive_by_mpi(world.as_raw());
+                self.send_by_mpi(world.as_raw());
+            }
+            Transport::Virtual(rank) => {
+                self.expect_virtually(rank);
+                self.send_virtually(rank);
+            }
         }
     }
 
@@ -253,22 +269,28 @@ impl Exchange {
             + size_of::<[u64; 2]>() * self.sizes.capacity()
     }
 
+    /// Expects messages of the sizes that have come.
+    fn expect_sizes(&mut self) {
+        for (peer, size) in self.peers[..self.count].iter_mut().zip(&self.sizes) {
+            let bytes = usize::try_from(size[1]).expect("a size fits memory");
+            peer.receive.resize(bytes, 0);
+        }
+    }
+
     fn swap_sizes_by_mpi(&mut self, raw: RawComm) {
         for k in 0..self.count {
             let rank = self.peers[k].rank;
             let size = self.sizes[k].as_mut_ptr();
-            // SAFETY: `sizes` is owned by `self` and not touched before `wait` below; the two
+            // SAFETY: `sizes` is owned by `self` and not touched before these requests end; the two
             // halves of an entry are distinct.
             unsafe {
                 self.receive_piece(raw, size.add(1).cast(), SIZE, rank, TAG_SIZE);
                 self.send_piece(raw, size.cast(), SIZE, rank, TAG_SIZE);
             }
         }
-        self.wait();
-        wait_all(&mut self.sends);
     }
 
-    fn post_by_mpi(&mut self, raw: RawComm) {
+    fn receive_by_mpi(&mut self, raw: RawComm) {
         for k in 0..self.count {
             let rank = self.peers[k].rank;
             let (pointer, length) = {
@@ -284,6 +306,9 @@ impl Exchange {
                 }
             }
         }
+    }
+
+    fn send_by_mpi(&mut self, raw: RawComm) {
         for k in 0..self.count {
             let rank = self.peers[k].rank;
             let (pointer, length) = {
@@ -291,7 +316,7 @@ impl Exchange {
                 (send.as_ptr(), send.len())
             };
             for Range { start, end } in pieces(length, PIECE) {
-                // SAFETY: as above; MPI only reads the piece.
+                // SAFETY: as for receives; MPI only reads the piece.
                 unsafe {
                     let piece = pointer.add(start).cast();
                     self.send_piece(raw, piece, end - start, rank, TAG_DATA);
@@ -301,24 +326,30 @@ impl Exchange {
     }
 
     #[track_caller]
-    fn swap_sizes_virtually(&mut self, me: &Rank) {
+    fn send_sizes_virtually(&mut self, me: &Rank) {
         for (k, size) in self.sizes.iter().enumerate() {
             me.send(self.rank(k), Tag::Size, &size[0].to_ne_bytes(), 1);
             self.traffic.messages += 1;
-            self.traffic.bytes += 8;
+            self.traffic.bytes += SIZE as u64;
         }
+    }
+
+    fn receive_sizes_virtually(&mut self, me: &Rank) {
         for k in 0..self.count {
             let bytes = me.receive(me.expect(self.rank(k), Tag::Size));
             self.sizes[k][1] = bytemuck::pod_read_unaligned(&bytes);
         }
     }
 
-    #[track_caller]
-    fn post_virtually(&mut self, me: &Rank) {
+    fn expect_virtually(&mut self, me: &Rank) {
         let says = |k: &usize| !self.peers[*k].receive.is_empty();
         let ticket = |k: usize| (k, me.expect(self.rank(k), Tag::Data));
         let tickets = (0..self.count).filter(says).map(ticket);
         self.expected = Some((me.clone(), tickets.collect()));
+    }
+
+    #[track_caller]
+    fn send_virtually(&mut self, me: &Rank) {
         for k in 0..self.count {
             if self.peers[k].send.is_empty() {
                 continue;

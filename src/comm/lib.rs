@@ -14,7 +14,7 @@ pub use exchange::{Exchange, Peer, Traffic, pieces, read_pod};
 pub use joint::Joint;
 pub use relay::{PlainRecord, Receivers, Record, Relay};
 pub use virtual_ranks::{Call, CallTraffic, Computing, Machine, VirtualTime, virtual_ranks};
-pub use waiting::waited;
+pub use waiting::{progress, waited};
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -45,12 +45,19 @@ impl Session {
             return None;
         }
         let comm = Comm::of(Transport::Mpi(universe.world()));
+        waiting::set_on(true);
         Some((
             Self {
                 _universe: universe,
             },
             comm,
         ))
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        waiting::set_on(false);
     }
 }
 

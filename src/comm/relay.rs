@@ -174,8 +174,7 @@ impl<T: Record> Way<T> {
                 place => record.write(self.exchange.outgoing(place - usize::from(place > mine))),
             }
         }
-        self.exchange.post_sizes(comm);
-        self.exchange.post(comm);
+        self.exchange.post_with_sizes(comm);
         self.exchange.wait();
         for peer in self.exchange.incoming_all() {
             let mut bytes = peer.incoming();
@@ -369,7 +368,7 @@ mod tests {
         for ranks in [1, 2, 3, 5, 7, 12, 30] {
             virtual_ranks(ranks, Machine::IDEAL, |comm| {
                 let (me, ranks) = (comm.rank() as u64, ranks as u64);
-                let writes = |from: u64, to: u64| (from * to + to) % 3 == 0;
+                let writes = |from: u64, to: u64| (from * to + to).is_multiple_of(3);
                 let mut relay = Relay::new(Receivers::Named);
                 for round in 1..3 {
                     let to = (0..ranks).filter(|&to| writes(me, to));

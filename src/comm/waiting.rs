@@ -7,11 +7,14 @@ use std::cell::Cell;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
+use mpi::ffi;
+
 use super::virtual_ranks;
 
 thread_local! {
     /// Waiting of this thread: MPI is on the main thread alone.
     static WAITED: Cell<Duration> = const { Cell::new(Duration::ZERO) };
+    static IS_ON: Cell<bool> = const { Cell::new(false) };
 }
 
 /// Time that calls of this crate have waited for other ranks since the thread began. On a virtual
@@ -25,6 +28,30 @@ pub fn waited() -> Duration {
 pub(super) fn since_start() -> f64 {
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_secs_f64()
+}
+
+/// Lets MPI move the messages that are under way, if this is the thread that it is on: without its calls long messages stand
+/// still. For loops of all threads that run meanwhile, now and then.
+pub fn progress() {
+    if !IS_ON.get() {
+        return;
+    }
+    let mut flag = 0;
+    // SAFETY: MPI is initialised, and this is its thread. A probe takes no message.
+    unsafe {
+        ffi::MPI_Iprobe(
+            ffi::RSMPI_ANY_SOURCE,
+            ffi::RSMPI_ANY_TAG,
+            ffi::RSMPI_COMM_WORLD,
+            &raw mut flag,
+            ffi::RSMPI_STATUS_IGNORE,
+        );
+    }
+}
+
+/// Says that MPI is on this thread from now on, or no longer.
+pub(super) fn set_on(is_on: bool) {
+    IS_ON.set(is_on);
 }
 
 /// A call that waits for others.

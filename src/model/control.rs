@@ -160,7 +160,7 @@ pub struct OutputOptions {
 /// How files of all ranks are written, which never touches what is in them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sharing {
-    /// How many ranks write; all if absent.
+    /// How many ranks write; by bytes if absent.
     pub writers: Option<usize>,
     /// Arrays begin at multiples of so many bytes; anywhere if absent.
     pub alignment: Option<u64>,

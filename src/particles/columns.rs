@@ -113,8 +113,10 @@ bitflags! {
         const SHOWN = 1 << 4;
         /// With the motion, if materials ask for plastic strains about them.
         const STRAIN = 1 << 5;
+        /// Before the forces, if these read it of neighbours and not of their records; else before a post-mortem.
+        const STATE = 1 << 6;
         /// Whatever is needed before forces of stress and contact, in one message.
-        const FORCES = Self::STRESS.bits() | Self::CONTACT.bits();
+        const FORCES = Self::STRESS.bits() | Self::STATE.bits() | Self::CONTACT.bits();
     }
 }
 

@@ -114,11 +114,11 @@ particle_fields! {
     /// Velocity.
     velocity: Vector,                     "m/s",    State,    -,              Default,  -;
     /// Density.
-    density: Scalar,                      "kg/m^3", State,    STRESS,         Default,  -, kept;
+    density: Scalar,                      "kg/m^3", State,    STATE,          Default,  -, kept;
     /// Specific internal energy.
     specific_energy: Scalar,              "J/kg",   State,    -,              Default,  -, kept;
     /// Deviatoric stress, tension positive.
-    deviatoric_stress: Symmetric,         "Pa",     State,    STRESS,         Default,  -;
+    deviatoric_stress: Symmetric,         "Pa",     State,    STATE,          Default,  -;
     /// Equivalent plastic strain.
     plastic_strain: Scalar,               "",       State,    STRAIN,         Default,  -, kept;
     /// Damage: below one intact, one failed.
@@ -240,7 +240,7 @@ particle_fields! {
     /// Smoothing length of the SPH sums.
     smoothing_length: Scalar,             "m",      Migrated, MOTION,         Default,  -;
     /// Pressure, compression positive.
-    pressure: Scalar,                     "Pa",     Scratch,  STRESS,         Default,  -;
+    pressure: Scalar,                     "Pa",     Scratch,  STATE,          Default,  -;
     /// Longitudinal sound speed.
     sound_speed: Scalar,                  "m/s",    Scratch,  -,              OnDemand, -;
     /// Speed of the linear artificial viscosity: that of sound, none where failed matter bears no pressure.

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::program::{WHIPPLE, command, end, quarter_impact};
-use files::plan::{CONSTANTS, Machine};
+use files::plan::{CONSTANTS, Machine, Terms};
 
 const COARSE: [&str; 2] = ["--set", "spacing=0.05mm"];
 
@@ -38,7 +38,12 @@ fn levels_are_compared_for_each_number_of_ranks() {
         "--chart",
         chart.to_str().unwrap(),
     ];
-    let more = [&COARSE[..], &["--ranks", "1,8,64", "--doubled"], &files].concat();
+    let more = [
+        &COARSE[..],
+        &["--ranks", "1,8,64", "--doubled", "--terms"],
+        &files,
+    ]
+    .concat();
     let said = end(&mut plan(&quarter_impact(), &more)).with_code(0).stdout;
     assert_eq!(rows(&said, "1").len(), 1, "{said}");
     for ranks in ["8", "64"] {
@@ -57,6 +62,9 @@ fn levels_are_compared_for_each_number_of_ranks() {
     }
     for constant in &CONSTANTS {
         assert!(said.contains(&format!("2 x {} ", constant.key)), "{said}");
+    }
+    for (term, _) in Terms::default().named() {
+        assert!(said.contains(&format!("  {term} ")), "{said}");
     }
     let table = fs::read_to_string(csv).unwrap();
     // Names, units, and seven rows.

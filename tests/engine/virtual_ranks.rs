@@ -3,6 +3,7 @@
 
 use engine::step::measurements;
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::panic::catch_unwind;
 use std::thread;
 use std::time::Duration;
@@ -79,9 +80,10 @@ fn messages_come_to_whom_they_are_for() {
             for round in 0..6 {
                 fill(comm, &mut first, round);
                 if round % 2 == 1 {
-                    first.post_sizes(comm);
+                    first.post_with_sizes(comm);
+                } else {
+                    first.post(comm);
                 }
-                first.post(comm);
                 // Another exchange, which ends before.
                 fill(comm, &mut second, round + 100);
                 second.post(comm);
@@ -118,7 +120,8 @@ fn a_panic_of_one_rank_is_that_of_all() {
             if comm.rank() % 2 == 1 {
                 let others = (1..8).step_by(2).filter(|&rank| rank != comm.rank());
                 exchange.set_peers(others);
-                exchange.post_sizes(comm);
+                exchange.post_with_sizes(comm);
+                exchange.wait();
             }
         }
     });
@@ -139,7 +142,7 @@ fn ranks_that_wait_for_nothing_are_told() {
             let mut exchange = Exchange::default();
             let next = (comm.rank() + 1) % comm.size();
             exchange.set_peers(std::iter::once(next));
-            exchange.post_sizes(comm);
+            exchange.post_with_sizes(comm);
         },
         // Nobody says what all expect.
         |comm| swap(comm, 0, 1),
@@ -428,7 +431,47 @@ fn a_thousand_ranks_compute_what_one_does() {
 }
 
 fn many_compute_what_one_does(ranks: usize, spacing: &str) {
-    let begin = |comm: &Comm| Simulation::start(impact(spacing, 3, 2), comm).unwrap();
+    are_as_one(ranks, &impact(spacing, 3, 2));
+}
+
+/// Cubes of eight particles, `counts` along each axis, of which every other one flies towards its neighbour.
+fn crowd(counts: [u32; 3]) -> Case {
+    let mut text =
+        "dimension = 3\nspacing = \"0.1 mm\"\nrun.end_time = \"1 us\"\ndomain.levels = 3\n\
+                    domain.balance_every = 2\nmaterial.metal.library = \"aluminium-2024\"\n"
+            .to_owned();
+    for k in 0..counts.iter().product() {
+        let place = [
+            k % counts[0],
+            k / counts[0] % counts[1],
+            k / (counts[0] * counts[1]),
+        ];
+        let [x, y, z] = place.map(|n| 3 * n);
+        let speed = if place[0].is_multiple_of(2) { 500 } else { 0 };
+        let corner = |shift: u32| {
+            let at = [x, y, z].map(|n| format!("\"{} um\"", 100 * (n + shift)));
+            at.join(", ")
+        };
+        let _ = write!(
+            text,
+            "[[body]]\nname = \"b{k}\"\nmaterial = \"metal\"\nlattice = \"cubic\"\nvelocity = [\"{speed} m/s\", 0, 0]\n\
+             shape.box = {{ lower = [{}], upper = [{}] }}\n",
+            corner(0),
+            corner(2)
+        );
+    }
+    input::parse("crowd", &text, &[]).unwrap()
+}
+
+/// Each virtual rank holds the whole case: of a hundred thousand bodies 64 of them would take 160 GB.
+#[test]
+#[ignore = "slow: a thousand bodies on 64 ranks"]
+fn a_thousand_bodies_on_64_ranks_are_as_on_one() {
+    are_as_one(64, &crowd([10, 10, 10]));
+}
+
+fn are_as_one(ranks: usize, case: &Case) {
+    let begin = |comm: &Comm| Simulation::start(case.clone(), comm).unwrap();
     let solo = Comm::solo();
     let mut alone = begin(&solo);
     advance(&solo, &mut alone, 4);

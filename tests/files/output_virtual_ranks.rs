@@ -146,7 +146,10 @@ fn all_rows_come_to_their_blocks_in_few_messages() {
     for ranks in RANKS {
         let shares = virtual_ranks(ranks, Machine::IDEAL, |comm| {
             let mut sent = Vec::new();
-            let mut kept = Rows::default();
+            let mut kept = Rows::new(Sharing {
+                writers: Some(ranks),
+                ..Sharing::default()
+            });
             for job in jobs(ranks) {
                 let mut rows = Rows::new(Sharing {
                     writers: job.writers,

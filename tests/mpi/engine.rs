@@ -380,9 +380,10 @@ fn exchange_messages(comm: &Comm) {
             }
         }
         if round % 2 == 1 {
-            exchange.post_sizes(comm);
+            exchange.post_with_sizes(comm);
+        } else {
+            exchange.post(comm);
         }
-        exchange.post(comm);
         exchange.wait();
         for (k, &peer) in peers.iter().enumerate() {
             let bytes = length[peer * size + me].unwrap();
@@ -530,8 +531,7 @@ const CALLS: &[Call] = &[
         for k in 0..exchange.peers() {
             exchange.outgoing(k).push(1);
         }
-        exchange.post_sizes(comm);
-        exchange.post(comm);
+        exchange.post_with_sizes(comm);
         exchange.wait();
     }),
 ];

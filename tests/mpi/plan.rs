@@ -54,6 +54,7 @@ fn assert_told(comm: &Comm, simulation: &Simulation, before: Traffic, searches: 
         tally,
         sent,
         beyond,
+        late,
     } = told[comm.rank()];
     let (owned, halo, images, peers, traffic) = counted(simulation);
     let what = format!("{what}, rank {}", comm.rank());
@@ -75,6 +76,7 @@ fn assert_told(comm: &Comm, simulation: &Simulation, before: Traffic, searches: 
         since.bytes,
         "bytes: {what}"
     );
+    assert_eq!(late, sent.bytes - search.bytes, "late: {what}");
     assert_eq!(sent, beyond, "each rank has a node of its own: {what}");
 }
 

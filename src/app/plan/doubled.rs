@@ -1,17 +1,13 @@
 //! The influence of each number of a machine.
 
-use super::{PlanArgs, Planned, as_number};
+use super::{PlanArgs, Planned, as_number, most};
 use files::plan::{CONSTANTS, Load, Machine, Weak, computing, refined, step_time};
 use files::run::say::say;
 
 /// The efficiency of the most ranks, each number of the machine twice as large in turn.
 pub fn print(args: &PlanArgs, machine: &Machine, alone: &Load, all: &[Planned]) {
     let sharing = args.sharing(machine);
-    let best = |a: &&Planned, b: &&Planned| {
-        let by_ranks = a.row.ranks.cmp(&b.row.ranks);
-        by_ranks.then(a.row.efficiency.total_cmp(&b.row.efficiency))
-    };
-    let Some(planned) = all.iter().max_by(best) else {
+    let Some(planned) = most(all) else {
         return;
     };
     let each = f64::from(args.per_core) * as_number(sharing.threads);

@@ -75,7 +75,7 @@ pub fn excess(row: &Row, machine: &Machine) -> String {
 }
 
 /// Three digits.
-fn digits(value: f64) -> String {
+pub fn digits(value: f64) -> String {
     match value {
         v if v < 9.995 => format!("{v:.2}"),
         v if v < 99.95 => format!("{v:.1}"),

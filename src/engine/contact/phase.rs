@@ -82,7 +82,7 @@ impl Contact {
             + tasks
     }
 
-    /// Fields that halo particles need before the forces of stress and contact.
+    /// Fields that halo particles need before the forces of contact, at once with those of stress.
     #[must_use]
     pub fn halo_of_forces(&self) -> HaloPhase {
         self.table.halo

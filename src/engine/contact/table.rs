@@ -19,7 +19,7 @@ pub struct ContactTable {
     pub groups: Groups,
     /// Mode of each pair, and its range.
     pub foreign: ForeignTable,
-    /// Fields that halo particles need before the forces.
+    /// Fields that halo particles need before the forces of contact, at once with those of stress.
     pub halo: HaloPhase,
     /// Constants of the modes, in the order of the pairs.
     modes: ModePairs,
@@ -61,7 +61,7 @@ impl ContactTable {
                 size_classes,
             },
             groups,
-            halo: HaloPhase::STRESS,
+            halo: HaloPhase::empty(),
             modes: ModePairs::default(),
             pairs: Vec::with_capacity(n * n),
             inverse_densities: Vec::with_capacity(case.bodies.len()),

@@ -102,8 +102,7 @@ impl Halo {
             message.extend_from_slice(&chosen.mirror_masks[chosen.of(k)]);
             store.pack(phase, &chosen.particles[chosen.of(k)], message);
         });
-        self.exchange.post_sizes(comm);
-        self.exchange.post(comm);
+        self.exchange.post_with_sizes(comm);
     }
 
     /// Receives what [`Self::post_motion`] of the others sent, and lists the halo particles and

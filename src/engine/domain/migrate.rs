@@ -215,10 +215,11 @@ impl Migration {
                 self.exchange.expect(k, particles * size);
             }
         }
-        if !is_known {
-            self.exchange.post_sizes(comm);
+        if is_known {
+            self.exchange.post(comm);
+        } else {
+            self.exchange.post_with_sizes(comm);
         }
-        self.exchange.post(comm);
         particles.remove(&mut self.gone, &mut self.moves);
         let mut first = particles.owned();
         let incoming = (0..self.exchange.peers()).map(|k| self.exchange.incoming(k).len());

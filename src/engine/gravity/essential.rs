@@ -32,8 +32,7 @@ pub(super) fn exchange(
         let facts = &told[peer.rank()];
         pack(cube, mirrors, facts, own, peer.outgoing());
     });
-    exchange.post_sizes(comm);
-    exchange.post(comm);
+    exchange.post_with_sizes(comm);
     exchange.wait();
     closed.clear();
     for peer in exchange.incoming_all() {

@@ -20,7 +20,7 @@ use model::{Case, SphForm};
 use numerics::kernel::Kernel;
 use particles::MirrorForce;
 use particles::neighbours::{Groups, Lists};
-use particles::{Active, HaloImages, ParticleStore};
+use particles::{Active, HaloImages, HaloPhase, ParticleStore};
 use sums::corrected::CorrectedRecord;
 use sums::momentum::StressRecord;
 use sums::normalised::NormalisedRecord;
@@ -249,6 +249,18 @@ impl Sph {
         match &self.form {
             Form::Corrected(form) => form.records(),
             Form::Conventional(_) | Form::Normalised(_) | Form::StressPoints(_) => &[],
+        }
+    }
+
+    /// Fields that halo particles need before the forces of stress: records of the corrected form have the state of a
+    /// particle with them.
+    #[must_use]
+    pub fn halo_of_forces(case: &Case) -> HaloPhase {
+        let records = case.sph.form == SphForm::Corrected;
+        if records && !term_records::read_state(&case.sph.terms) {
+            HaloPhase::STRESS
+        } else {
+            HaloPhase::STRESS | HaloPhase::STATE
         }
     }
 

@@ -30,6 +30,11 @@ pub(super) fn bytes_of_records(options: &TermOptions) -> usize {
     }
 }
 
+/// True if terms read the state of halo particles.
+pub(super) fn read_state(options: &TermOptions) -> bool {
+    Owner::of_terms(options).contains(Owner::ARTIFICIAL_STRESS)
+}
+
 impl Terms {
     pub fn new(case: &Case, kernel: &Kernel) -> Self {
         // All bodies of a case have the same h/Δp.

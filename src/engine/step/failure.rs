@@ -5,6 +5,7 @@ use super::simulation::Simulation;
 use crate::diagnose::{Leave, NumericalFailure, PostMortem, fastest, is_explained};
 use comm::Comm;
 use model::NumericalFailurePolicy;
+use particles::HaloPhase;
 
 /// Checks that the kinetic energy, as of the last [`diagnose`](super::measurements::diagnose), has a source. Collective.
 ///
@@ -20,13 +21,15 @@ pub fn check_gain(simulation: &Simulation, comm: &Comm) -> Result<(), StepError>
     Err(simulation.failure(comm, NumericalFailure::Gain, id))
 }
 
-/// The particle `id` and its surroundings, on the rank `rank` that owns it; nothing on others.
+/// The particle `id` and its surroundings, on the rank that owns it; nothing on others. Halo particles have the state of their
+/// owners from here on. Right after a step, before the particles change. Collective.
 #[must_use]
-pub fn post_mortem(simulation: &Simulation, id: u64, rank: usize) -> Option<PostMortem> {
+pub fn post_mortem(simulation: &mut Simulation, comm: &Comm, id: u64) -> Option<PostMortem> {
     let reach = 4.0 * simulation.sph.smoothing.longest();
     let past = simulation.step_control.past();
-    let (particles, state) = (&simulation.particles, &simulation.state);
-    PostMortem::of(id, rank, particles, reach, state, past)
+    let (particles, state) = (&mut simulation.particles, &simulation.state);
+    (simulation.space.halo).exchange(comm, particles, HaloPhase::STATE);
+    PostMortem::of(id, comm.rank(), particles, reach, state, past)
 }
 
 /// Takes out all particles whose state is out of range, and keeps them for the files if they are

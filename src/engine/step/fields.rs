@@ -74,7 +74,7 @@ pub fn bytes_of_messages(case: &Case) -> Vec<usize> {
     let (contact, store) = (ContactTable::of_kinds(case), store_of(case));
     let mut messages = vec![
         1 + store.bytes_per_particle(store.motion_phase()),
-        store.bytes_per_particle(contact.halo) + Sph::bytes_shown(case),
+        store.bytes_per_particle(contact.halo | Sph::halo_of_forces(case)) + Sph::bytes_shown(case),
     ];
     if contact.has_friction() {
         messages.push(store.bytes_per_particle(HaloPhase::FRICTION));

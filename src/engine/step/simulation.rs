@@ -347,6 +347,7 @@ impl Simulation {
     /// neighbours of the last search, after a step `dt` (s). Collective.
     fn sum(&mut self, comm: &Comm, dt: f64) {
         let Self {
+            case,
             particles,
             state,
             timers,
@@ -368,7 +369,7 @@ impl Simulation {
         timers.lap(Phase::Material);
         contact.measure(particles, lists, dt);
         timers.lap(Phase::ContactFractions);
-        let stress = contact.halo_of_forces();
+        let stress = contact.halo_of_forces() | Sph::halo_of_forces(case);
         halo.post(
             comm,
             particles,
@@ -380,13 +381,17 @@ impl Simulation {
         timers.lap(Phase::Momentum);
         halo.finish(particles, stress, sph.payload());
         timers.lap(Phase::HaloStress);
+        if contact.table.has_friction() {
+            contact.resist(particles, lists, dt);
+            timers.lap(Phase::ContactForces);
+            halo.post(comm, particles, HaloPhase::FRICTION, None);
+            timers.lap(Phase::HaloStress);
+        }
         sph.forces(particles, lists, Side::Outer);
         sph.faces(particles, lists);
         timers.lap(Phase::Momentum);
         if contact.table.has_friction() {
-            contact.resist(particles, lists, dt);
-            timers.lap(Phase::ContactForces);
-            halo.exchange(comm, particles, HaloPhase::FRICTION);
+            halo.finish(particles, HaloPhase::FRICTION, None);
             timers.lap(Phase::HaloStress);
         }
         contact.forces(particles, lists, loads, dt);

@@ -25,10 +25,18 @@ pub use transfer::Gathered;
 /// Most rows of a writer, which are counted in `u32`.
 const MOST_ROWS: u64 = 1 << 31;
 
-/// Number of ranks that write `total` rows: the wanted number, if they can hold them.
+/// Rows of a writer where a case does not tell how many ranks write: 16 MB of vectors.
+const ROWS: u64 = (16 << 20) / 24;
+
+/// Ranks that write then, at least: those of a node or less.
+const FEW: u64 = 16;
+
+/// Number of ranks that write `total` rows: the wanted number, or by bytes, if they can hold them.
 fn writers(wanted: Option<usize>, total: u64, ranks: usize) -> usize {
-    let least = usize::try_from(total.div_ceil(MOST_ROWS)).unwrap_or(usize::MAX);
-    wanted.unwrap_or(ranks).max(least).clamp(1, ranks)
+    let number = |count: u64| usize::try_from(count).unwrap_or(usize::MAX);
+    let by_bytes = number(total.div_ceil(ROWS).max(FEW));
+    let least = number(total.div_ceil(MOST_ROWS));
+    wanted.unwrap_or(by_bytes).max(least).clamp(1, ranks)
 }
 
 /// The first transfer, to the groups of ranks.
@@ -184,6 +192,15 @@ mod tests {
         assert_eq!(writers(Some(1), 1 << 31, 10_000), 1);
         assert_eq!(writers(Some(1), (1 << 31) + 1, 10_000), 2);
         assert_eq!(writers(Some(1), 1 << 40, 10_000), 512);
+    }
+
+    #[test]
+    fn many_ranks_have_writers_by_bytes() {
+        assert_eq!(writers(None, 0, 1), 1);
+        assert_eq!(writers(None, 10_000_000, 10_000), 16);
+        // 10⁵ particles of each of 128 ranks on a node: some 18 writers a node.
+        assert_eq!(writers(None, 1_000_000_000, 10_000), 1431);
+        assert_eq!(writers(None, 1 << 40, 10_000), 10_000);
     }
 
     #[test]

@@ -33,14 +33,12 @@ pub fn agree<T>(comm: &Comm, result: Result<T, OutputError>) -> Result<T, Output
             let message = exchange.outgoing(peer);
             message.extend_from_slice(text.as_deref().unwrap_or_default().as_bytes());
         }
-        exchange.post_sizes(comm);
-        exchange.post(comm);
+        exchange.post_with_sizes(comm);
         exchange.wait();
         result
     } else {
         exchange.set_peers(std::iter::once(first));
-        exchange.post_sizes(comm);
-        exchange.post(comm);
+        exchange.post_with_sizes(comm);
         exchange.wait();
         let text = String::from_utf8_lossy(exchange.incoming(0)).into_owned();
         Err(OutputError::OtherRank(text))

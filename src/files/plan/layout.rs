@@ -22,6 +22,8 @@ pub struct Load {
     pub sent: Traffic,
     /// Those that leave its node.
     pub beyond: Traffic,
+    /// Bytes of those that come after the motion, while there is work.
+    pub late: u64,
 }
 
 /// Decomposition of a case for a number of ranks.
@@ -169,19 +171,22 @@ pub fn loads_of(
     let mirrors = Mirrors::of(case);
     let mut loads = vec![Load::default(); slabs.ranks()];
     let all = (particles.positions.as_slice(), particles.reach.as_slice());
-    let mut send = |from: usize, to: usize, traffic: Traffic| {
+    let mut send = |from: usize, to: usize, traffic: Traffic, late: u64| {
         let load: &mut Load = &mut loads[from];
         load.sent += traffic;
+        load.late += late;
         if from / ranks_per_node != to / ranks_per_node {
             load.beyond += traffic;
         }
     };
+    let late: usize = bytes[1..].iter().sum();
     let tallies = tally(slabs, &mirrors, all, |sent| {
-        send(sent.from, sent.to, traffic_of(sent, bytes));
+        let late = sent.particles * late as u64;
+        send(sent.from, sent.to, traffic_of(sent, bytes), late);
     });
     let farthest = particles.reach.iter().copied().fold(0.0, f64::max);
     extent_exchange(slabs, farthest, |from, to| {
-        send(from, to, Traffic::of(EXTENT_MESSAGE));
+        send(from, to, Traffic::of(EXTENT_MESSAGE), 0);
     });
     for (load, tally) in loads.iter_mut().zip(tallies) {
         load.tally = tally;

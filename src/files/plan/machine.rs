@@ -32,7 +32,8 @@ pub struct Machine {
     pub node_bandwidth: f64,
     /// Time that each doubling of the number of ranks adds to a step (s), by collective calls.
     pub agreement_time: f64,
-    /// Fraction of the computing time in which messages are transferred.
+    /// Fraction of the computing time in which messages are transferred: stresses travel while forces are summed that need none
+    /// of others.
     pub overlap: f64,
     /// Bytes that all ranks together write in a second.
     pub disk_bandwidth: f64,
@@ -160,7 +161,7 @@ impl Default for Machine {
             node_latency: 0.5e-6,
             node_bandwidth: 50e9,
             agreement_time: 10e-6,
-            overlap: 0.0,
+            overlap: 0.18,
             disk_bandwidth: 2e9,
             memory_per_node: f64::INFINITY,
             longest_job: 86_400.0,
@@ -176,6 +177,16 @@ impl Machine {
             particle_time: times * self.particle_time,
             image_time: times * self.image_time,
             ..self
+        }
+    }
+
+    /// A machine for steps in which a share of the particles moves: what rests is neither summed nor sent.
+    #[must_use]
+    pub fn at_rest(self, share: f64) -> Self {
+        Self {
+            bandwidth: self.bandwidth / share,
+            node_bandwidth: self.node_bandwidth / share,
+            ..self.at_work(share)
         }
     }
 

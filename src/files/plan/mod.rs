@@ -16,7 +16,7 @@ mod weak;
 pub use files::Files;
 pub use layout::{Layout, Load, loads, loads_of, slabs_at_start, slabs_of};
 pub use machine::{CONSTANTS, Constant, Machine};
-pub use model::{StepTime, computing, step_time};
+pub use model::{StepTime, Terms, computing, step_time};
 pub use outlook::{Outlook, expected_steps, share_of_work, work_of_unequal};
 pub use particles::Particles;
 pub use rough::rough_step;

@@ -2,7 +2,7 @@
 //!
 //! A rank with n particles and m images takes `n t_p + m t_i` of one core, shared by its threads. Its
 //! messages take their latencies, and the bytes of all ranks of a node take its bandwidth, except for
-//! messages that overlap with computing. The slowest rank and the collective calls determine the step.
+//! messages after the motion, as far as these overlap with computing. The slowest rank and the collective calls determine the step.
 
 use super::layout::Load;
 use super::machine::Machine;
@@ -16,31 +16,90 @@ pub struct StepTime {
     pub computing: f64,
     /// The whole step.
     pub all: f64,
+    /// What the whole step consists of.
+    pub terms: Terms,
+}
+
+/// What a step consists of (s), by the rank that makes it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Terms {
+    /// An even share of all particles on cores that have nothing to share.
+    pub even: f64,
+    /// What the rank has more than an even share.
+    pub uneven: f64,
+    /// Particles of other ranks and images behind symmetry planes.
+    pub images: f64,
+    /// What threads lose, and cores of which all of a node work.
+    pub sharing: f64,
+    /// Bytes that no computing hides.
+    pub bytes: f64,
+    /// Latencies of messages.
+    pub messages: f64,
+    /// Collective calls.
+    pub agreements: f64,
+}
+
+impl Terms {
+    /// All of them, with what they are.
+    #[must_use]
+    pub fn named(&self) -> [(&'static str, f64); 7] {
+        [
+            ("an even share of the particles", self.even),
+            ("uneven shares", self.uneven),
+            ("particles of others, and images", self.images),
+            ("threads, and cores of a busy node", self.sharing),
+            ("bytes of messages", self.bytes),
+            ("latencies of messages", self.messages),
+            ("collective calls", self.agreements),
+        ]
+    }
+
+    fn sum(&self) -> f64 {
+        self.named().iter().map(|(_, time)| time).sum()
+    }
 }
 
 /// Times of a step on ranks with these loads.
 #[must_use]
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
 pub fn step_time(loads: &[Load], machine: &Machine, sharing: Sharing) -> StepTime {
-    let slower = crowded(loads.len(), machine, sharing);
+    let (slower, threads) = (
+        crowded(loads.len(), machine, sharing),
+        sharing.threads as f64,
+    );
+    let particles: u64 = loads.iter().map(|load| load.tally.owned).sum();
+    let even = particles as f64 / loads.len() as f64 * machine.particle_time / threads;
+    let agreements = machine.agreement_time * (loads.len() as f64).log2();
     let mut time = StepTime::default();
     for node in loads.chunks(sharing.ranks_per_node) {
-        let (mut within, mut beyond) = (0.0, 0.0);
+        let (mut within, mut beyond, mut late) = (0.0, 0.0, 0.0);
         for load in node {
             beyond += load.beyond.bytes as f64;
             within += load.within().bytes as f64;
+            late += load.late as f64;
         }
         let flight = beyond / machine.bandwidth + within / machine.node_bandwidth;
+        // Nothing hides the motion.
+        let late = flight * late / (within + beyond).max(1.0);
         for load in node {
-            let computing = slower * computing(load, machine);
-            let waiting = (flight - machine.overlap * computing).max(0.0);
-            let messages = load.beyond.messages as f64 * machine.latency
-                + load.within().messages as f64 * machine.node_latency;
-            time.computing = time.computing.max(computing);
-            time.all = time.all.max(computing + waiting + messages);
+            let alone = computing(load, machine);
+            let images = load.tally.images as f64 * machine.image_time / threads;
+            let terms = Terms {
+                even,
+                uneven: alone / threads - images - even,
+                images,
+                sharing: (slower - 1.0 / threads) * alone,
+                bytes: flight - late.min(machine.overlap * slower * alone),
+                messages: load.beyond.messages as f64 * machine.latency
+                    + load.within().messages as f64 * machine.node_latency,
+                agreements,
+            };
+            time.computing = time.computing.max(slower * alone);
+            if terms.sum() > time.all {
+                (time.all, time.terms) = (terms.sum(), terms);
+            }
         }
     }
-    time.all += machine.agreement_time * (loads.len() as f64).log2();
     time
 }
 
@@ -86,6 +145,7 @@ mod tests {
             },
             sent: traffic(sent),
             beyond: traffic(beyond),
+            late: sent,
         }
     }
 
@@ -100,6 +160,7 @@ mod tests {
             latency: 1e-3,
             bandwidth: 1e6,
             agreement_time: 0.5,
+            overlap: 0.0,
             ..Machine::default()
         };
         let sharing = Sharing {
@@ -110,6 +171,10 @@ mod tests {
         let time = step_time(&loads, &machine, sharing);
         assert!((time.computing - 2e-3).abs() < 1e-12);
         assert!((time.all - (0.5 + 1.01e-3 + 5e-3 + 3e-3)).abs() < 1e-12);
+        // The first rank sends most, and has less than an even share.
+        let told = time.terms.named().map(|(_, time)| time);
+        let wanted = [1.5e-3, -0.5e-3, 1e-5, 0.0, 5e-3, 3e-3, 0.5];
+        assert!(told.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-12));
         let hidden = Machine {
             overlap: 1.0,
             ..machine.clone()

@@ -49,6 +49,7 @@ pub fn rough_step(case: &Case, ranks: usize, machine: &Machine) -> f64 {
         },
         sent,
         beyond,
+        late: halo * bytes[1..].iter().sum::<usize>() as u64,
     };
     step_time(&vec![load; ranks], machine, sharing).all
 }

@@ -2,7 +2,7 @@
 
 use super::layout::Load;
 use super::machine::Machine;
-use super::model::step_time;
+use super::model::{StepTime, step_time};
 use super::sharing::Sharing;
 use comm::Traffic;
 use engine::domain::Tally;
@@ -16,6 +16,8 @@ pub struct Weak {
     pub levels: usize,
     /// Mean number of particles of another rank over its own.
     pub halo: f64,
+    /// Time of a step.
+    pub time: StepTime,
     /// Time of one core with a core's particles alone over that of a step.
     pub efficiency: f64,
 }
@@ -41,13 +43,14 @@ impl Weak {
     #[must_use]
     #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^52")]
     pub fn of_refined(fine: &[Load], each: f64, machine: &Machine, sharing: Sharing) -> Self {
-        let time = step_time(fine, machine, sharing).all;
+        let time = step_time(fine, machine, sharing);
         let halo: u64 = fine.iter().map(|load| load.tally.halo).sum();
         Self {
             ranks: fine.len(),
             levels: 0,
             halo: halo as f64 / (each * fine.len() as f64),
-            efficiency: each * machine.particle_time / (time * sharing.threads as f64),
+            time,
+            efficiency: each * machine.particle_time / (time.all * sharing.threads as f64),
         }
     }
 }
@@ -89,6 +92,7 @@ pub fn refined(loads: &[Load], levels: usize, each: f64) -> Vec<Load> {
             },
             sent: traffic(load.sent),
             beyond: traffic(load.beyond),
+            late: scaled(load.late, halo),
         }
     };
     loads.iter().map(fine).collect()
@@ -124,6 +128,7 @@ mod tests {
                 bytes: scaled(100, halo(b)),
             },
             beyond: Traffic::default(),
+            late: scaled(60, halo(b)),
         };
         let fine = refined(&[load(20.0)], 3, 64_000.0)[0];
         let exact = load(40.0);
@@ -131,5 +136,6 @@ mod tests {
         assert_eq!(fine.tally.owned, exact.tally.owned);
         assert!(near(fine.tally.halo, exact.tally.halo), "{fine:?}");
         assert!(near(fine.sent.bytes, exact.sent.bytes), "{fine:?}");
+        assert!(near(fine.late, exact.late), "{fine:?}");
     }
 }

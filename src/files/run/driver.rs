@@ -207,8 +207,8 @@ impl<'a> Driver<'a> {
             let mut text = error.to_string();
             if self.post_mortems < POST_MORTEMS {
                 self.post_mortems += 1;
+                let about = post_mortem_of(&mut self.simulation, comm, id);
                 let simulation = &self.simulation;
-                let about = post_mortem_of(simulation, id, comm.rank());
                 let there = self.folder.on_root(comm, || {
                     let mut files = ["txt", "h5"]
                         .map(|ending| stem.with_extension(ending))

@@ -72,5 +72,6 @@ pub(super) fn accelerate_with<R: Swept>(
                 empty(&mut from_mirrors.forces);
             }
             R::sweep(all, chunk, from_mirrors);
+            comm::progress();
         });
 }

@@ -72,6 +72,7 @@ impl Formulation for StressPoints {
                     empty(&mut from_mirrors.forces);
                 }
                 all.sweep(chunk, from_mirrors);
+                comm::progress();
             });
     }
 

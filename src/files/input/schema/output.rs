@@ -32,7 +32,7 @@ optional_tables! {
         /// Snapshot fields, at least one.
         fields: Option<Spanned<Vec<Spanned<String>>>> => "the usual ones";
         /// How many ranks write.
-        writers: Option<Spanned<i64>>, AtLeast(1) => "all";
+        writers: Option<Spanned<i64>>, AtLeast(1) => "one for each 16 MB of an array, 16 at least";
         /// Arrays begin at multiples of so many bytes.
         alignment: Option<Spanned<i64>>, AtLeast(1) => "anywhere";
         /// Snapshots with schedules of their own.
