@@ -575,3 +575,45 @@ fn a_quarter_and_the_whole_model_tell_the_same() {
     let drawn = end(command(WHIPPLE).arg("plot").arg(&quarter).arg("--history")).with_code(0);
     assert!(drawn.stderr.contains(note), "{drawn:#?}");
 }
+
+/// Names of so many bodies are a text of more than 64 kB, which attributes of older files could not hold. Ranks share bodies, and
+/// each of these has more of them than a task holds at once.
+#[test]
+fn many_bodies_are_written_and_read() {
+    let place = tempfile::tempdir().unwrap();
+    let case = place.path().join("discs.toml");
+    let mut text = "dimension = 2\nspacing = \"0.5 mm\"\nrun.end_time = \"0.1 us\"\n\
+                    material.metal.library = \"copper\"\nmeasure.bodies = true\n"
+        .to_owned();
+    let name = |k: u32| format!("disc-{k:04}-{}", "of-a-row-of-discs-".repeat(2));
+    for k in 0..1400 {
+        let [x, y] = [k % 40, k / 40].map(|n| 3 * n);
+        text += &format!(
+            "[[body]]\nname = \"{}\"\nmaterial = \"metal\"\nvelocity = [\"{k} m/s\", 0]\n\
+             shape.sphere = {{ centre = [\"{x} mm\", \"{y} mm\"], radius = \"1 mm\" }}\n",
+            name(k)
+        );
+    }
+    fs::write(&case, text).unwrap();
+    let [alone, two] = ["alone", "two"].map(|name| place.path().join(name));
+    for (number, run) in [(1, &alone), (2, &two)] {
+        end(ranks(number).arg("run").arg(&case).arg("--out").arg(run)).with_code(0);
+    }
+    assert_same(&alone, &two);
+    let rows = fs::read_to_string(alone.join("bodies.csv")).unwrap();
+    assert_eq!(rows, fs::read_to_string(two.join("bodies.csv")).unwrap());
+    let of_last = rows.lines().filter(|line| line.contains(&name(1399)));
+    let velocities = of_last.map(|line| line.split(',').nth(13).unwrap());
+    assert!(
+        velocities
+            .map(|v| v.parse::<f64>().unwrap())
+            .all(|v| (v - 1399.0).abs() < 1e-9)
+    );
+    let newest = fs::read_dir(alone.join("snapshots")).unwrap();
+    let newest = (newest.map(|entry| entry.unwrap().path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "vtkhdf"))
+        .max()
+        .unwrap();
+    let told = end(command(WHIPPLE).arg("info").arg(newest)).with_code(0);
+    assert!(told.stdout.contains(&name(1399)));
+}

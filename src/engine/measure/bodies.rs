@@ -1,6 +1,7 @@
 //! Figures of each body: the rows of `bodies.csv`.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
@@ -10,10 +11,10 @@ use comm::Comm;
 use material::FAILED;
 use model::{Case, edge};
 use numerics::exact_sum::{ExactSum, gather_limbs, scatter_limbs};
-use numerics::gathered_sums::GatheredSums;
+use numerics::gathered_sums::{GatheredSums, none};
 use numerics::ordered::{disordered, ordered};
 use numerics::vector::{cross, norm};
-use particles::{Active, Block, GRAIN, KeptBlocks, ParticleStore};
+use particles::{Active, GRAIN, KeptBlocks, ParticleStore};
 
 /// Figures of a body (SI), the images behind symmetry planes with it. Values that no particle has
 /// are NaN.
@@ -67,6 +68,12 @@ const EXTREMES: usize = 17;
 /// Extremes that hang on the size of a particle.
 const SIZED: usize = 6;
 
+/// Bodies whose parts a task holds; those of more would be large where there are many.
+const HELD: usize = 16;
+
+/// Bodies whose sums are joined over ranks at once.
+const AT_ONCE: usize = 1024;
+
 /// Sums and extremes of some particles of a body.
 struct Part {
     sums: GatheredSums<SUMS>,
@@ -78,18 +85,6 @@ impl Part {
         Self {
             sums: GatheredSums::default(),
             extremes: [f64::NEG_INFINITY; EXTREMES],
-        }
-    }
-
-    fn join(&mut self, mut other: Self) {
-        self.take(other.sums.sums(), &other.extremes);
-    }
-
-    /// Takes in what other particles come to.
-    fn take(&mut self, sums: &[ExactSum; SUMS], extremes: &[f64; EXTREMES]) {
-        self.sums.merge_sums(sums);
-        for (most, &other) in self.extremes.iter_mut().zip(extremes) {
-            *most = most.max(other);
         }
     }
 
@@ -150,10 +145,38 @@ impl Part {
             raise(&mut self.extremes[3 + a], half - x[a]);
         }
     }
+}
+
+/// Sums and extremes of particles of one body: of an inactive block, or of all.
+#[derive(Debug)]
+struct Kept {
+    body: usize,
+    sums: [ExactSum; SUMS],
+    extremes: [f64; EXTREMES],
+}
+
+impl Kept {
+    fn none(body: usize) -> Self {
+        Self {
+            body,
+            sums: none(),
+            extremes: [f64::NEG_INFINITY; EXTREMES],
+        }
+    }
+
+    /// Takes in what other particles of the body come to.
+    fn join(&mut self, other: &Self) {
+        for (sum, other) in self.sums.iter_mut().zip(&other.sums) {
+            sum.merge(other);
+        }
+        for (most, &other) in self.extremes.iter_mut().zip(&other.extremes) {
+            *most = most.max(other);
+        }
+    }
 
     /// The figures of the whole, of the sums of all ranks.
-    fn figures(&mut self, whole: Whole) -> BodyFigures {
-        let sums = self.sums.sums().each_ref().map(ExactSum::value);
+    fn figures(&self, whole: Whole) -> BodyFigures {
+        let sums = self.sums.each_ref().map(ExactSum::value);
         let three = |first: usize| [sums[first], sums[first + 1], sums[first + 2]];
         let most = |k: usize| match self.extremes[k] {
             f64::NEG_INFINITY => f64::NAN,
@@ -196,14 +219,6 @@ impl Part {
     }
 }
 
-/// Sums and extremes of the particles of an inactive block, all of one body.
-#[derive(Debug)]
-struct Kept {
-    body: usize,
-    sums: [ExactSum; SUMS],
-    extremes: [f64; EXTREMES],
-}
-
 /// Sums and extremes of inactive particles of bodies, kept from one row to the next.
 #[derive(Debug, Default)]
 pub struct KeptBodies(KeptBlocks<Kept>);
@@ -226,70 +241,155 @@ pub fn bodies(
     comm: &Comm,
 ) -> Vec<BodyFigures> {
     let particles = active.particles;
-    let none = || case.bodies.iter().map(|_| Part::new()).collect::<Vec<_>>();
-    // `parts` are those of bodies from the first one on.
-    let add = |places: Range<usize>, parts: &mut [Part], first_body: usize| {
+    let all = Shared::of(case.bodies.len());
+    let add = |places: Range<usize>, parts: &mut Parts| {
         let mut temperatures = [0.0; GRAIN];
         for first in places.clone().step_by(GRAIN) {
             let temperatures = &mut temperatures[..GRAIN.min(places.end - first)];
             reading::temperatures(case, particles, first, temperatures);
             for (k, &temperature) in temperatures.iter().enumerate() {
                 let i = first + k;
-                let body = particles.body[i] as usize;
-                parts[body - first_body].add(case, particles, i, temperature);
+                let part = parts.of(particles.body[i] as usize);
+                part.add(case, particles, i, temperature);
             }
         }
     };
     let of_inactive = |places: Range<usize>| {
         let of = &particles.body[places.clone()];
-        let body = of
-            .iter()
-            .all(|body| *body == of[0])
-            .then_some(of[0] as usize)?;
-        let mut parts = vec![Part::new()];
-        add(places, &mut parts, body);
-        let Part { sums, extremes } = parts.pop()?;
+        of.iter().all(|body| *body == of[0]).then_some(())?;
+        let mut parts = Parts::of_shared(&all);
+        add(places, &mut parts);
+        let (body, Part { sums, extremes }) = parts.held.pop()?;
         Some(Kept {
             body,
             sums: sums.into_sums(),
             extremes,
         })
     };
-    let of_block = |mut parts: Vec<Part>, mut block: Block<'_, Kept>| {
-        match block.kept(of_inactive) {
-            Some(kept) => parts[kept.body].take(&kept.sums, &kept.extremes),
-            None => add(block.places(), &mut parts, 0),
-        }
-        parts
-    };
-    let join = |mut parts: Vec<Part>, others: Vec<Part>| {
-        for (part, other) in parts.iter_mut().zip(others) {
-            part.join(other);
-        }
-        parts
-    };
-    let mut parts = (kept.0)
+    (kept.0)
         .each(active.particles.owned(), active.inactive)
         // same bits in any order: exact sums are integers, and extremes are some value among all
-        .fold(none, of_block)
-        // same bits in any order, as above
-        .reduce(none, join);
-    join_ranks(&mut parts, comm);
-    parts.iter_mut().map(|part| part.figures(whole)).collect()
+        .for_each_init(
+            || Parts::of_shared(&all),
+            |parts, mut block| match block.kept(of_inactive) {
+                Some(kept) => all.take(kept),
+                None => add(block.places(), parts),
+            },
+        );
+    figures(all, whole, comm)
+}
+
+/// Parts of a few bodies that a task holds; what it holds no longer goes to those of all.
+struct Parts<'a> {
+    held: Vec<(usize, Part)>,
+    /// Place of the part that was added to last, and of the one that makes room next.
+    last: usize,
+    next: usize,
+    all: &'a Shared,
+}
+
+impl<'a> Parts<'a> {
+    fn of_shared(all: &'a Shared) -> Self {
+        Self {
+            held: Vec::new(),
+            last: 0,
+            next: 0,
+            all,
+        }
+    }
+
+    /// The part of a body.
+    fn of(&mut self, body: usize) -> &mut Part {
+        let is_last = (self.held.get(self.last)).is_some_and(|(held, _)| *held == body);
+        if !is_last {
+            let place = self.held.iter().position(|(held, _)| *held == body);
+            self.last = place.unwrap_or_else(|| self.begin(body));
+        }
+        &mut self.held[self.last].1
+    }
+
+    /// Begins the part of another body, and tells where it is held.
+    fn begin(&mut self, body: usize) -> usize {
+        let part = (body, Part::new());
+        if self.held.len() < HELD {
+            self.held.push(part);
+            return self.held.len() - 1;
+        }
+        let place = self.next;
+        self.next = (place + 1) % HELD;
+        self.all
+            .take(&std::mem::replace(&mut self.held[place], part).into());
+        place
+    }
+}
+
+impl Drop for Parts<'_> {
+    fn drop(&mut self) {
+        for part in self.held.drain(..) {
+            self.all.take(&part.into());
+        }
+    }
+}
+
+impl From<(usize, Part)> for Kept {
+    fn from((body, part): (usize, Part)) -> Self {
+        let Part { sums, extremes } = part;
+        Self {
+            body,
+            sums: sums.into_sums(),
+            extremes,
+        }
+    }
+}
+
+/// What bodies with particles here come to, joined by any tasks in any order.
+struct Shared(Vec<Mutex<Option<Box<Kept>>>>);
+
+impl Shared {
+    fn of(bodies: usize) -> Self {
+        Self((0..bodies).map(|_| Mutex::new(None)).collect())
+    }
+
+    fn take(&self, kept: &Kept) {
+        let mut body = self.0[kept.body]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        body.get_or_insert_with(|| Box::new(Kept::none(kept.body)))
+            .join(kept);
+    }
+}
+
+/// The figures of all bodies, some at a time: their sums take far more memory. Collective.
+fn figures(all: Shared, whole: Whole, comm: &Comm) -> Vec<BodyFigures> {
+    let mut figures = Vec::with_capacity(all.0.len());
+    let mut bodies = (all.0.into_iter())
+        .map(|body| body.into_inner().unwrap_or_else(PoisonError::into_inner))
+        .enumerate();
+    loop {
+        let some = bodies.by_ref().take(AT_ONCE);
+        let mut some: Vec<Box<Kept>> = some
+            .map(|(body, kept)| kept.unwrap_or_else(|| Box::new(Kept::none(body))))
+            .collect();
+        if some.is_empty() {
+            return figures;
+        }
+        join_ranks(&mut some, comm);
+        figures.extend(some.iter().map(|kept| kept.figures(whole)));
+    }
 }
 
 /// Joins what bodies come to on all ranks. Collective.
-fn join_ranks(parts: &mut [Part], comm: &Comm) {
+fn join_ranks(bodies: &mut [Box<Kept>], comm: &Comm) {
     let mut limbs = Vec::new();
-    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    let sums = bodies.iter_mut().flat_map(|body| &mut body.sums);
     gather_limbs(sums, &mut limbs);
     comm.sum_i64(&mut limbs);
-    let sums = parts.iter_mut().flat_map(|part| part.sums.sums());
+    let sums = bodies.iter_mut().flat_map(|body| &mut body.sums);
     scatter_limbs(sums, &limbs);
-    let extremes = parts.iter().flat_map(|part| part.extremes);
+    let extremes = bodies.iter().flat_map(|body| body.extremes);
     let mut words: Vec<u64> = extremes.map(ordered).collect();
     comm.max_u64(&mut words);
-    let extremes = parts.iter_mut().flat_map(|part| &mut part.extremes);
+    let extremes = bodies.iter_mut().flat_map(|body| &mut body.extremes);
     for (most, &word) in extremes.zip(&words) {
         *most = disordered(word);
     }

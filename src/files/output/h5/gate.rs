@@ -25,8 +25,8 @@ use super::together::open_together;
 use super::transfer::{call, read_rows};
 use super::{Element, Number, RowType, access, explain};
 
-/// Longest text in an attribute (bytes), as HDF5 stores one beside its object.
-const LONGEST_NOTE: usize = 64 << 10;
+/// Longest text in an attribute (bytes): names of a million bodies.
+const LONGEST_NOTE: usize = 64 << 20;
 /// Members of a group that is listed; a snapshot of all fields has a fifth of them.
 const MOST_MEMBERS: usize = 256;
 /// Values in a row: those of a tensor.

@@ -63,6 +63,8 @@ impl<'a> Writer<'a> {
             keep_room(path).map_err(OutputError::io("create", path))
         })?;
         let mut builder = access(Some(comm));
+        // Texts of many bodies: records of before 1.8 hold none of 64 kB and more.
+        builder.with_fapl(|list| list.libver_v18());
         if let Some(bytes) = alignment {
             // Shorter objects lie between.
             builder.with_fapl(|list| list.alignment(bytes, bytes));
@@ -113,7 +115,7 @@ impl<'a> Writer<'a> {
         })
     }
 
-    /// Attaches text to a group or dataset, as UTF-8 of fixed length, below 64 kB.
+    /// Attaches text to a group or dataset, as UTF-8 of fixed length.
     ///
     /// # Errors
     /// [`OutputError::Hdf5`].
