@@ -446,18 +446,6 @@ impl Material {
             }
         };
         batch.pressure = response.pressure;
-        // Directions bear their own part of the tension, and what has pores resets them.
-        let least = self.eos.least_density_of_tension() * rho0;
-        if least > 0.0 && !self.has_directions() && self.porosity.is_none() {
-            for k in 0..LANES {
-                let most_tension = if batch.density[k] < least {
-                    0.0
-                } else {
-                    f64::NEG_INFINITY
-                };
-                batch.pressure[k] = at_least(batch.pressure[k], most_tension);
-            }
-        }
         if ALL {
             self.failure.bulk(batch);
             self.strength.limit_tension(batch);

@@ -20,11 +20,6 @@
 //! .1 to .38. So below, f is the cubic of the same value and slope there that ends in the thermal
 //! pressure of a monatomic gas, `Γ ρ e` with Γ = 2/3 (γ₀ if that is less), where matter is thin.
 //!
-//! Cold pressure linear in density would let matter without a limit of spall bear any tension. Solids without a flaw
-//! come apart at some fifth to tenth of their bulk modulus (Rose et al. 1984, Phys. Rev. B 29, 2963: a universal curve
-//! of energies of cohesion), so matter bears none below [`DENSE`] of the reference density. Its derivatives stay, for the
-//! sound speed of what has come apart.
-//!
 //! # Strong compression
 //!
 //! The fit has an end. N, the cold part, turns down beyond a `μ_N` where `dN/dμ = 0`, and D has a
@@ -74,10 +69,6 @@ struct Bounds {
 impl EquationOfState for MieGruneisen {
     fn bulk_modulus(&self, rho0: f64) -> f64 {
         rho0 * self.c0 * self.c0
-    }
-
-    fn least_density_of_tension(&self) -> f64 {
-        DENSE
     }
 
     #[inline(always)]

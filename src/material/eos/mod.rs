@@ -65,12 +65,6 @@ pub trait EquationOfState: Listed {
         None
     }
 
-    /// Density over that of the reference state below which matter that is the same in all directions bears no tension,
-    /// whatever else it has against it; zero if it bears any, or if pressures are limited already.
-    fn least_density_of_tension(&self) -> f64 {
-        0.0
-    }
-
     /// `[a, b]` of the bulk modulus `a (p + b)` (Pa) of a gas at the pressure p (Pa); none of condensed matter, whose
     /// modulus is for the most part that of its reference state.
     fn modulus_over_pressure(&self) -> Option<[f64; 2]> {
@@ -141,15 +135,6 @@ macro_rules! equations_of_state {
             pub fn spray_energy(&self) -> Option<f64> {
                 match self {
                     $( Self::$law(law) => law.spray_energy(), )+
-                }
-            }
-
-            /// See [`EquationOfState::least_density_of_tension`].
-            #[inline(always)]
-            #[must_use]
-            pub fn least_density_of_tension(&self) -> f64 {
-                match self {
-                    $( Self::$law(law) => law.least_density_of_tension(), )+
                 }
             }
 
