@@ -223,13 +223,13 @@ impl Case {
     /// `true` if a material of the case is an explosive.
     #[must_use]
     pub fn is_explosive(&self) -> bool {
-        self.any_material(|material| material.burns())
+        self.any_material(Material::burns)
     }
 
     /// `true` if a material of the case has directions of its own.
     #[must_use]
     pub fn has_directions(&self) -> bool {
-        self.any_material(|material| material.has_directions())
+        self.any_material(Material::has_directions)
     }
 
     /// `true` if failure of a material of the case changes this field.

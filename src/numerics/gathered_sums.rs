@@ -38,11 +38,6 @@ impl<const N: usize> GatheredSums<N> {
         }
     }
 
-    /// Adds all terms of other sums.
-    pub fn merge(&mut self, mut other: Self) {
-        self.merge_sums(other.sums());
-    }
-
     /// Adds what other terms have been summed up to.
     pub fn merge_sums(&mut self, others: &[ExactSum; N]) {
         for (sum, other) in self.sums.iter_mut().zip(others) {
@@ -107,7 +102,7 @@ mod tests {
             }
         }
         let [mut all, other] = gathered;
-        all.merge(other);
+        all.merge_sums(&other.into_sums());
         for (sum, plain) in all.into_sums().iter().zip(&plain) {
             assert_eq!(sum.value().to_bits(), plain.value().to_bits());
         }

@@ -1,6 +1,7 @@
 //! What a run tells: its tables, its summary, its log, and how far it is.
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -588,7 +589,8 @@ fn many_bodies_are_written_and_read() {
     let name = |k: u32| format!("disc-{k:04}-{}", "of-a-row-of-discs-".repeat(2));
     for k in 0..1400 {
         let [x, y] = [k % 40, k / 40].map(|n| 3 * n);
-        text += &format!(
+        let _ = write!(
+            text,
             "[[body]]\nname = \"{}\"\nmaterial = \"metal\"\nvelocity = [\"{k} m/s\", 0]\n\
              shape.sphere = {{ centre = [\"{x} mm\", \"{y} mm\"], radius = \"1 mm\" }}\n",
             name(k)

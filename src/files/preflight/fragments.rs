@@ -1,5 +1,7 @@
 //! What a sphere that a bumper breaks leaves in one piece, beside the particles that it has.
 
+use std::fmt::Write;
+
 use super::approach::Approach;
 use model::{Body, Case, Shape};
 
@@ -43,7 +45,8 @@ pub fn coarse(case: &Case, approaches: &[Approach], messages: &mut Vec<String>) 
             1e6 * size
         );
         if across < ACROSS_FRAGMENT {
-            doubt += &format!(
+            let _ = write!(
+                doubt,
                 "; fewer than {ACROSS_FRAGMENT} are dust, which walls behind bear better: a verdict takes a spacing of {:.0} um",
                 1e6 * size / ACROSS_FRAGMENT
             );
