@@ -45,7 +45,7 @@ impl Session {
             return None;
         }
         let comm = Comm::of(Transport::Mpi(universe.world()));
-        waiting::set_on(true);
+        waiting::set_on(comm.size() > 1);
         Some((
             Self {
                 _universe: universe,

@@ -49,7 +49,7 @@ pub fn progress() {
     }
 }
 
-/// Says that MPI is on this thread from now on, or no longer.
+/// Says that messages of MPI are on this thread from now on, or no longer.
 pub(super) fn set_on(is_on: bool) {
     IS_ON.set(is_on);
 }

@@ -332,7 +332,8 @@ fn a_material_of_no_body_changes_nothing() {
         [material.lead]\nlibrary = \"lead\"\n[[body]]\nname = \"disc\"\nmaterial = \"lead\"\n\
         shape.sphere.radius = \"3 mm\"\nvelocity = [\"100 m/s * y / (3 mm)\", 0]\n";
     let other = "[material.other]\nlibrary = \"steel-weldox-460e-ductile\"\n";
-    let [alone, beside] = [ball.to_owned(), format!("{ball}{other}")].map(|text| {
+    let gas = "[material.gas]\nlibrary = \"air\"\n";
+    let [alone, beside] = [ball.to_owned(), format!("{ball}{other}{gas}")].map(|text| {
         let mut s = crate::physics_support::start(crate::physics_support::inline(&text));
         advance(&mut s, 5);
         s.particles.velocity

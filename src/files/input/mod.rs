@@ -143,7 +143,7 @@ pub fn time(text: &str) -> Result<f64, String> {
 /// The options of the SPH sums of a case that says nothing of them.
 #[must_use]
 pub fn usual_sph() -> SphOptions {
-    let read = validate::sph(&schema::SphParams::default(), &[]);
+    let read = validate::sph(&schema::SphParams::default(), std::iter::empty());
     read.map_or_else(|_| unreachable!("nothing is typed"), |(options, _)| options)
 }
 

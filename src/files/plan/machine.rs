@@ -161,7 +161,7 @@ impl Default for Machine {
             node_latency: 0.5e-6,
             node_bandwidth: 50e9,
             agreement_time: 10e-6,
-            overlap: 0.18,
+            overlap: 0.0,
             disk_bandwidth: 2e9,
             memory_per_node: f64::INFINITY,
             longest_job: 86_400.0,

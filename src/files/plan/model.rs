@@ -160,7 +160,6 @@ mod tests {
             latency: 1e-3,
             bandwidth: 1e6,
             agreement_time: 0.5,
-            overlap: 0.0,
             ..Machine::default()
         };
         let sharing = Sharing {

@@ -72,7 +72,12 @@ pub fn case(params: &CaseParams, folder: &Path) -> Result<Case, Diagnostic> {
     let axisymmetric = axisymmetric::axisymmetric(params, dimension, &mut symmetry)?;
     let extent = if axisymmetric { 3 } else { dimension };
     let (names, mut materials) = materials::materials(&params.material, extent, folder)?;
-    let (sph, smoothing) = sph(&params.sph, &materials)?;
+    // A material that no body has changes nothing.
+    let is_of_body = |material: &&Material| {
+        let mut names = params.body.iter().filter_map(|body| body.get_ref().material.as_ref());
+        names.any(|name| *name.get_ref() == material.name)
+    };
+    let (sph, smoothing) = sph(&params.sph, materials.iter().filter(is_of_body))?;
     let mut bodies = bodies::Reader {
         dimension,
         case: params,
@@ -275,12 +280,12 @@ fn symmetry(params: &[SymmetryParams], dimension: usize) -> Result<Vec<SymmetryP
 }
 
 /// The options of the sums, and smoothing length over spacing. A gas expands beyond the reach that its particles had.
-pub(super) fn sph(
+pub(super) fn sph<'a>(
     params: &SphParams,
-    materials: &[Material],
+    mut materials: impl Iterator<Item = &'a Material>,
 ) -> Result<(SphOptions, f64), Diagnostic> {
     let is_gas = |material: &Material| matches!(material.eos, Eos::IdealGas(_) | Eos::Jwl(_));
-    let expands = params.smoothing_length.is_none() && materials.iter().any(is_gas);
+    let expands = params.smoothing_length.is_none() && materials.any(is_gas);
     let [min, max] = if expands { [1.0, 10.0] } else { [0.6, 2.0] };
     let bounds = SmoothingLength::Variable {
         min: params.smoothing_length_min()?.unwrap_or(min),
